@@ -1,0 +1,51 @@
+use glamx::Vec3;
+
+/// An axis-aligned box, its corners in metres in the frame of whatever it bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: Vec3,
+    /// The corner with the largest coordinates.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The smallest box around `points`; `None` without a point.
+    pub fn of_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        let start = Self {
+            min: first,
+            max: first,
+        };
+        Some(points.fold(start, |b, p| Self {
+            min: b.min.min(p),
+            max: b.max.max(p),
+        }))
+    }
+
+    /// The point of the box closest to `point`.
+    pub fn clamp(&self, point: Vec3) -> Vec3 {
+        point.max(self.min).min(self.max)
+    }
+
+    /// Whether `point` lies in the box or on its surface.
+    pub fn contains(&self, point: Vec3) -> bool {
+        point.cmpge(self.min).all() && point.cmple(self.max).all()
+    }
+
+    /// Distance in metres from `point` to the box, 0 inside it.
+    pub fn distance_outside(&self, point: Vec3) -> f32 {
+        point.distance(self.clamp(point))
+    }
+
+    /// The middle of the box.
+    pub fn center(&self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Edge lengths in metres.
+    pub fn extents(&self) -> Vec3 {
+        self.max - self.min
+    }
+}

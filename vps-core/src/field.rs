@@ -1,0 +1,39 @@
+use glamx::Vec3;
+
+use crate::Aabb;
+
+/// A solid given by how deep a point lies in it.
+///
+/// Everything is in the field's own frame and in metres. Voxelmaps (through
+/// [`Voxelmap::local`](crate::Voxelmap::local) and
+/// [`Voxelmap::trilinear`](crate::Voxelmap::trilinear)) and analytic shapes implement it;
+/// [`conformance`](crate::conformance) holds the checks an implementation must pass.
+pub trait DistanceField {
+    /// Penetration V(P) of a shell point in metres: positive inside, negative outside
+    /// (section 2.2).
+    ///
+    /// `normal` is the unit inward normal of the shell point in the field's frame. Only eq. 4
+    /// needs it, for the local part of the penetration; other fields ignore it.
+    fn penetration(&self, point: Vec3, normal: Vec3) -> f32;
+
+    /// The direction in which penetration grows at `point`, of length one, or zero where the field
+    /// has none (at the centre of a ball).
+    fn inward_direction(&self, point: Vec3) -> Vec3;
+
+    /// An upper bound in metres on [`penetration`](Self::penetration) for every point of the ball
+    /// around `center`, whatever its normal: a ball whose bound is below a threshold holds no
+    /// point that reaches it.
+    fn penetration_bound(&self, center: Vec3, radius: f32) -> f32;
+
+    /// A box that holds the solid.
+    fn bounds(&self) -> Aabb;
+
+    /// The largest difference in metres between [`penetration`](Self::penetration) and the exact
+    /// one, for points near the surface of the solid.
+    fn error_bound(&self) -> f32;
+
+    /// The negative of the penetration: positive outside. For fields that need no normal.
+    fn signed_distance(&self, point: Vec3) -> f32 {
+        -self.penetration(point, Vec3::ZERO)
+    }
+}

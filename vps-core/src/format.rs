@@ -1,0 +1,239 @@
+//! The `.vps` file: an [`Asset`] as bytes that are used in place.
+//!
+//! All numbers are little-endian. A header of 64 bytes is followed by sections, each starting at
+//! a multiple of 64 bytes, zeros between them:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 0..8 | the characters `VPSASSET` |
+//! | 8..12 | version, [`VPS_VERSION`] |
+//! | 12..16 | number of levels + 1 |
+//! | 16..24 | XXH3-64 of all bytes from 64 on |
+//! | 24..32 | number of voxels |
+//! | 32..40 | number of points |
+//! | 40..48 | number of clusters |
+//! | 48..64 | zeros |
+//!
+//! Sections in order: the parameters ([`Parameters`], 112 bytes), voxel values (i16), points and
+//! normals (3 x f32 each), clusters ([`Cluster`], 28 bytes), level starts (u32).
+
+use bytemuck::{Pod, Zeroable};
+use glamx::Vec3;
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::{
+    Aabb, Accuracy, Asset, Cluster, Grid, GridError, MassProperties, PointSphereTree, TreeError,
+    Voxelmap, VoxelmapError,
+};
+
+/// Version of the `.vps` file this library reads and writes.
+pub const VPS_VERSION: u32 = 1;
+
+const MAGIC: [u8; 8] = *b"VPSASSET";
+const ALIGN: usize = 64;
+
+/// The first 64 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Header {
+    magic: [u8; 8],
+    version: u32,
+    level_starts: u32,
+    checksum: u64,
+    voxels: u64,
+    points: u64,
+    clusters: u64,
+    zeros: [u64; 2],
+}
+
+/// All of an asset that has a fixed size.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Parameters {
+    dims: [u32; 3],
+    origin: [f32; 3],
+    voxel_size: f32,
+    sigma: f32,
+    solid_min: [f32; 3],
+    solid_max: [f32; 3],
+    near_m: f32,
+    far_m: f32,
+    band_m: f32,
+    mass: MassProperties,
+    zero: u32,
+}
+
+/// Why bytes are not an [`Asset`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FormatError {
+    /// Another kind of file.
+    #[error("not a .vps file")]
+    Foreign,
+    /// A file of another version of this library.
+    #[error("a .vps file of version {0}, but this library reads version 1: build it again")]
+    Version(u32),
+    /// The file ends before its data, or goes on behind it.
+    #[error("the file has {found} bytes, but its header speaks of {expected}")]
+    Length {
+        /// Bytes the header asks for.
+        expected: u64,
+        /// Bytes there are.
+        found: u64,
+    },
+    /// The bytes were changed after they were written.
+    #[error("the checksum does not match: the file is damaged")]
+    Checksum,
+    /// The bytes do not start at a multiple of 8.
+    #[error("the bytes must lie at an address that is a multiple of 8")]
+    Alignment,
+    /// The grid is none.
+    #[error("in the voxelmap: {0}")]
+    Grid(#[from] GridError),
+    /// The voxelmap is none.
+    #[error("in the voxelmap: {0}")]
+    Voxelmap(#[from] VoxelmapError),
+    /// The tree is none.
+    #[error("in the point-sphere tree: {0}")]
+    Tree(#[from] TreeError),
+}
+
+/// Where the sections of a file lie.
+struct Layout {
+    starts: [usize; 6],
+    end: usize,
+}
+
+impl Layout {
+    /// `None` when the sizes do not fit an address.
+    fn of(header: &Header) -> Option<Self> {
+        let size = |count: u64, of: usize| {
+            let count = usize::try_from(count).ok()?;
+            count.checked_mul(of)
+        };
+        let sizes = [
+            size_of::<Parameters>(),
+            size(header.voxels, size_of::<i16>())?,
+            size(header.points, size_of::<[f32; 3]>())?,
+            size(header.points, size_of::<[f32; 3]>())?,
+            size(header.clusters, size_of::<Cluster>())?,
+            size(u64::from(header.level_starts), size_of::<u32>())?,
+        ];
+        let mut starts = [0; 6];
+        let mut end = size_of::<Header>();
+        for (start, size) in starts.iter_mut().zip(sizes) {
+            *start = end.checked_next_multiple_of(ALIGN)?;
+            end = start.checked_add(size)?;
+        }
+        Some(Self { starts, end })
+    }
+}
+
+impl<'a> Asset<'a> {
+    /// Reads the bytes of a `.vps` file in place: nothing is copied.
+    ///
+    /// Costs one pass over the bytes for the checksum and one over the points a level of the tree.
+    ///
+    /// # Errors
+    /// When the bytes are not a sound asset of this version, at an address that is a multiple
+    /// of 8.
+    pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FormatError> {
+        let start = bytes.get(..size_of::<Header>()).ok_or(FormatError::Foreign)?;
+        let header: Header = bytemuck::pod_read_unaligned(start);
+        if header.magic != MAGIC {
+            return Err(FormatError::Foreign);
+        }
+        if header.version != VPS_VERSION {
+            return Err(FormatError::Version(header.version));
+        }
+        let wrong_length = |expected: usize| FormatError::Length {
+            expected: expected as u64,
+            found: bytes.len() as u64,
+        };
+        let layout = Layout::of(&header).ok_or(wrong_length(usize::MAX))?;
+        if bytes.len() != layout.end {
+            return Err(wrong_length(layout.end));
+        }
+        if xxh3_64(&bytes[size_of::<Header>()..]) != header.checksum {
+            return Err(FormatError::Checksum);
+        }
+        fn cast<T: Pod>(bytes: &[u8], start: usize, count: usize) -> Result<&[T], FormatError> {
+            bytemuck::try_cast_slice(&bytes[start..start + count * size_of::<T>()])
+                .map_err(|_| FormatError::Alignment)
+        }
+        let [parameters, values, points, normals, clusters, levels] = layout.starts;
+        let parameters: &[Parameters] = cast(bytes, parameters, 1)?;
+        let p = parameters[0];
+        let point_count = header.points as usize;
+        Ok(Self {
+            voxelmap: Voxelmap::new(
+                Grid::new(Vec3::from_array(p.origin), p.voxel_size, p.dims)?,
+                p.sigma,
+                Aabb {
+                    min: Vec3::from_array(p.solid_min),
+                    max: Vec3::from_array(p.solid_max),
+                },
+                Accuracy {
+                    near_m: p.near_m,
+                    far_m: p.far_m,
+                    band_m: p.band_m,
+                },
+                cast(bytes, values, header.voxels as usize)?.into(),
+            )?,
+            tree: PointSphereTree::new(
+                cast(bytes, points, point_count)?.into(),
+                cast(bytes, normals, point_count)?.into(),
+                cast(bytes, clusters, header.clusters as usize)?.into(),
+                cast(bytes, levels, header.level_starts as usize)?.into(),
+            )?,
+            mass: p.mass,
+        })
+    }
+}
+
+/// The bytes of a `.vps` file.
+#[cfg(feature = "alloc")]
+pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
+    use bytemuck::{bytes_of, cast_slice};
+
+    let (map, tree) = (&asset.voxelmap, &asset.tree);
+    let mut header = Header {
+        magic: MAGIC,
+        version: VPS_VERSION,
+        level_starts: tree.level_starts().len() as u32,
+        checksum: 0,
+        voxels: map.values().len() as u64,
+        points: tree.point_count() as u64,
+        clusters: tree.clusters().len() as u64,
+        zeros: [0; 2],
+    };
+    let accuracy = map.accuracy();
+    let parameters = Parameters {
+        dims: map.grid().dims(),
+        origin: map.grid().origin().to_array(),
+        voxel_size: map.grid().voxel_size(),
+        sigma: map.sigma(),
+        solid_min: map.solid().min.to_array(),
+        solid_max: map.solid().max.to_array(),
+        near_m: accuracy.near_m,
+        far_m: accuracy.far_m,
+        band_m: accuracy.band_m,
+        mass: asset.mass,
+        zero: 0,
+    };
+    let sections: [&[u8]; 6] = [
+        bytes_of(&parameters),
+        cast_slice(map.values()),
+        cast_slice(tree.points()),
+        cast_slice(tree.normals()),
+        cast_slice(tree.clusters()),
+        cast_slice(tree.level_starts()),
+    ];
+    let mut bytes = alloc::vec![0; size_of::<Header>()];
+    for section in sections {
+        bytes.resize(bytes.len().next_multiple_of(ALIGN), 0);
+        bytes.extend_from_slice(section);
+    }
+    header.checksum = xxh3_64(&bytes[size_of::<Header>()..]);
+    bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
+    bytes
+}

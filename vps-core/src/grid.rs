@@ -1,0 +1,163 @@
+use glamx::Vec3;
+
+use crate::Aabb;
+
+/// A regular grid of cubical voxels (section 2.1.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    origin: Vec3,
+    voxel_size: f32,
+    dims: [u32; 3],
+}
+
+/// Why a [`Grid`] was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// A voxel has no size.
+    #[error("the voxel size must be positive and finite, not {0} m")]
+    VoxelSize(f32),
+    /// The grid lies nowhere.
+    #[error("the origin of the grid is not finite: {0}")]
+    Origin(Vec3),
+    /// The grid has no voxel, or more than can be numbered.
+    #[error("{0} x {1} x {2} voxels are none, or more than 2^31 in all")]
+    Dims(u32, u32, u32),
+}
+
+impl Grid {
+    /// A grid of `dims` voxels of edge `voxel_size` metres, its lowest corner at `origin` (field
+    /// frame).
+    ///
+    /// # Errors
+    /// When the voxel size is not positive, the origin not finite, or the grid empty or larger
+    /// than 2^31 voxels.
+    pub fn new(origin: Vec3, voxel_size: f32, dims: [u32; 3]) -> Result<Self, GridError> {
+        if !(voxel_size > 0.0 && voxel_size.is_finite()) {
+            return Err(GridError::VoxelSize(voxel_size));
+        }
+        if !origin.is_finite() {
+            return Err(GridError::Origin(origin));
+        }
+        let voxels: u128 = dims.iter().map(|&n| u128::from(n)).product();
+        if voxels == 0 || voxels > 1 << 31 {
+            return Err(GridError::Dims(dims[0], dims[1], dims[2]));
+        }
+        Ok(Self {
+            origin,
+            voxel_size,
+            dims,
+        })
+    }
+
+    /// The lowest corner of the grid, in metres in the field frame.
+    pub fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// Edge length s of a voxel in metres.
+    pub fn voxel_size(&self) -> f32 {
+        self.voxel_size
+    }
+
+    /// Voxels along x, y and z.
+    pub fn dims(&self) -> [u32; 3] {
+        self.dims
+    }
+
+    /// How many voxels there are.
+    pub fn voxel_count(&self) -> usize {
+        self.dims.iter().map(|&n| n as usize).product()
+    }
+
+    /// The box the voxels fill.
+    pub fn bounds(&self) -> Aabb {
+        let dims = Vec3::from_array(self.dims.map(|n| n as f32));
+        Aabb {
+            min: self.origin,
+            max: self.origin + dims * self.voxel_size,
+        }
+    }
+
+    /// Position of a voxel in an array of all voxels: x runs fastest, then y, then z.
+    pub fn index(&self, voxel: [u32; 3]) -> usize {
+        let [nx, ny, _] = self.dims.map(|n| n as usize);
+        let [x, y, z] = voxel.map(|c| c as usize);
+        (z * ny + y) * nx + x
+    }
+
+    /// Centre C of a voxel in metres in the field frame.
+    pub fn center(&self, voxel: [u32; 3]) -> Vec3 {
+        let voxel = Vec3::from_array(voxel.map(|c| c as f32));
+        self.origin + (voxel + 0.5) * self.voxel_size
+    }
+
+    /// The voxel that holds `point`, or the closest one for a point outside of the grid.
+    pub fn voxel_at(&self, point: Vec3) -> [u32; 3] {
+        self.clamped((point - self.origin) / self.voxel_size)
+    }
+
+    /// The box between the outermost voxel centres, half a voxel smaller than the grid.
+    pub(crate) fn center_bounds(&self) -> Aabb {
+        let bounds = self.bounds();
+        let half = Vec3::splat(0.5 * self.voxel_size);
+        Aabb {
+            min: bounds.min + half,
+            max: bounds.max - half,
+        }
+    }
+
+    /// The lowest of the eight voxels whose centres surround `point`, and how far the point lies
+    /// between their centres along each axis, from 0 to 1. The point must lie in
+    /// [`center_bounds`](Self::center_bounds).
+    pub(crate) fn cell_at(&self, point: Vec3) -> ([u32; 3], Vec3) {
+        let at = (point - self.origin) / self.voxel_size - 0.5;
+        let corner = self.clamped(at);
+        let corner = [0, 1, 2].map(|axis| corner[axis].min(self.dims[axis].saturating_sub(2)));
+        let fraction = at - Vec3::from_array(corner.map(|c| c as f32));
+        (corner, fraction)
+    }
+
+    /// Casting saturates, so a NaN becomes voxel 0 and no index leaves the grid.
+    fn clamped(&self, at: Vec3) -> [u32; 3] {
+        let at = at.to_array();
+        [0, 1, 2].map(|axis| (at[axis] as u32).min(self.dims[axis] - 1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn voxels_are_found_by_their_centres() {
+        let grid = Grid::new(Vec3::new(-1.0, 2.0, 0.5), 0.25, [3, 4, 5]).unwrap();
+        let mut expected_index = 0;
+        for z in 0..5 {
+            for y in 0..4 {
+                for x in 0..3 {
+                    assert_eq!(grid.voxel_at(grid.center([x, y, z])), [x, y, z]);
+                    assert_eq!(grid.index([x, y, z]), expected_index);
+                    expected_index += 1;
+                }
+            }
+        }
+        assert_eq!(grid.voxel_count(), expected_index);
+    }
+
+    #[test]
+    fn points_outside_belong_to_the_border() {
+        let grid = Grid::new(Vec3::ZERO, 1.0, [2, 2, 2]).unwrap();
+        assert_eq!(grid.voxel_at(Vec3::splat(-9.0)), [0, 0, 0]);
+        assert_eq!(grid.voxel_at(Vec3::splat(9.0)), [1, 1, 1]);
+        assert_eq!(grid.voxel_at(Vec3::splat(f32::NAN)), [0, 0, 0]);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        assert!(Grid::new(Vec3::ZERO, 0.0, [1, 1, 1]).is_err());
+        assert!(Grid::new(Vec3::ZERO, f32::NAN, [1, 1, 1]).is_err());
+        assert!(Grid::new(Vec3::NAN, 1.0, [1, 1, 1]).is_err());
+        assert!(Grid::new(Vec3::ZERO, 1.0, [1, 0, 1]).is_err());
+        assert!(Grid::new(Vec3::ZERO, 1.0, [u32::MAX; 3]).is_err());
+    }
+}

@@ -1,0 +1,260 @@
+use bytemuck::{Pod, Zeroable};
+use glamx::Vec3;
+
+use crate::{Aabb, Storage};
+
+/// The deepest tree there can be: 2^32 points with two children a cluster.
+pub const MAX_LEVELS: usize = 32;
+
+/// One cluster of a [`PointSphereTree`] (eq. 6).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Cluster {
+    /// Centre X of a ball around all points below the cluster, in the shell frame.
+    pub center: [f32; 3],
+    /// Radius R of that ball in metres.
+    pub radius: f32,
+    /// The first child: a cluster of the next level, counted from that level's start, or on the
+    /// leaf level a point.
+    pub first: u32,
+    /// How many children follow each other from there.
+    pub count: u32,
+    /// The point that stands for the whole cluster, P_1.
+    pub parent_point: u32,
+}
+
+/// A pointshell ordered in a tree of clusters, each with a ball around its points
+/// (section 2.1.2).
+///
+/// Children of a cluster lie next to each other, and so do the points of a leaf. Every point
+/// belongs to exactly one leaf. All leaves are on the last level.
+#[derive(Clone, Debug)]
+pub struct PointSphereTree<'a> {
+    points: Storage<'a, [f32; 3]>,
+    normals: Storage<'a, [f32; 3]>,
+    clusters: Storage<'a, Cluster>,
+    level_starts: Storage<'a, u32>,
+    bounds: Aabb,
+}
+
+/// Why a [`PointSphereTree`] was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TreeError {
+    /// A shell needs a point.
+    #[error("the pointshell has no point")]
+    NoPoints,
+    /// Each point has one normal.
+    #[error("{points} points but {normals} normals")]
+    NormalCount {
+        /// Points given.
+        points: usize,
+        /// Normals given.
+        normals: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("point {0} is not finite")]
+    Point(usize),
+    /// A normal is not of length one.
+    #[error("the normal of point {0} is not of length one")]
+    Normal(usize),
+    /// Levels begin at 0, grow, and end with the last cluster; the top one holds one cluster.
+    #[error("the levels do not divide the clusters, or are more than 32")]
+    Levels,
+    /// The children of a level's clusters must be the next level (or the points), each once and
+    /// in order.
+    #[error("the children of cluster {0} are not the next in order")]
+    Children(usize),
+    /// The parent point lies in another cluster.
+    #[error("the parent point of cluster {0} is not below it")]
+    ParentPoint(usize),
+    /// A ball leaves a point out.
+    #[error("the ball of cluster {cluster} does not hold point {point}")]
+    Ball {
+        /// The cluster.
+        cluster: usize,
+        /// A point below it.
+        point: usize,
+    },
+}
+
+impl<'a> PointSphereTree<'a> {
+    /// A tree over `points` (metres, shell frame) with unit inward `normals`, both in the order of
+    /// the leaves. `clusters` holds one level after the other from the top; level L is
+    /// `level_starts[L - 1]..level_starts[L]`, so there is one start more than levels.
+    ///
+    /// Costs one pass over all points a level: all that a query relies on is checked here.
+    ///
+    /// # Errors
+    /// When the parts are not such a tree.
+    pub fn new(
+        points: Storage<'a, [f32; 3]>,
+        normals: Storage<'a, [f32; 3]>,
+        clusters: Storage<'a, Cluster>,
+        level_starts: Storage<'a, u32>,
+    ) -> Result<Self, TreeError> {
+        if normals.len() != points.len() {
+            return Err(TreeError::NormalCount {
+                points: points.len(),
+                normals: normals.len(),
+            });
+        }
+        let position = |p: &[f32; 3]| Vec3::from_array(*p);
+        if let Some(i) = points.iter().position(|p| !position(p).is_finite()) {
+            return Err(TreeError::Point(i));
+        }
+        let unit = |n: &[f32; 3]| (position(n).length() - 1.0).abs() < 1e-3;
+        if let Some(i) = normals.iter().position(|n| !unit(n)) {
+            return Err(TreeError::Normal(i));
+        }
+        let bounds = Aabb::of_points(points.iter().map(position)).ok_or(TreeError::NoPoints)?;
+        let tree = Self {
+            points,
+            normals,
+            clusters,
+            level_starts,
+            bounds,
+        };
+        tree.check_levels()?;
+        tree.check_clusters()?;
+        Ok(tree)
+    }
+
+    fn check_levels(&self) -> Result<(), TreeError> {
+        let starts = &self.level_starts;
+        let levels = starts.len().saturating_sub(1);
+        let fits = (1..=MAX_LEVELS).contains(&levels)
+            && starts[0] == 0
+            && starts[1] == 1
+            && starts.windows(2).all(|w| w[0] < w[1])
+            && starts[levels] as usize == self.clusters.len();
+        if fits { Ok(()) } else { Err(TreeError::Levels) }
+    }
+
+    fn check_clusters(&self) -> Result<(), TreeError> {
+        for level in 1..=self.level_count() {
+            let children = if level == self.level_count() {
+                self.points.len()
+            } else {
+                self.level(level + 1).len()
+            };
+            let mut next = 0;
+            let start = self.level_starts[level as usize - 1] as usize;
+            for (i, cluster) in self.level(level).iter().enumerate() {
+                if cluster.first as usize != next || cluster.count == 0 {
+                    return Err(TreeError::Children(start + i));
+                }
+                next += cluster.count as usize;
+                if next > children {
+                    return Err(TreeError::Children(start + i));
+                }
+            }
+            if next != children {
+                return Err(TreeError::Children(start + self.level(level).len() - 1));
+            }
+        }
+        // From here on every range of children is known to be sound.
+        for level in 1..=self.level_count() {
+            let start = self.level_starts[level as usize - 1] as usize;
+            for (i, cluster) in self.level(level).iter().enumerate() {
+                let below = self.points_below(level, cluster);
+                if !below.contains(&(cluster.parent_point as usize)) {
+                    return Err(TreeError::ParentPoint(start + i));
+                }
+                let center = Vec3::from_array(cluster.center);
+                let outside = |&p: &usize| {
+                    // Written so that a NaN counts as outside.
+                    let inside = center.distance(self.point(p)) <= cluster.radius;
+                    !inside
+                };
+                if let Some(point) = below.into_iter().find(outside) {
+                    return Err(TreeError::Ball {
+                        cluster: start + i,
+                        point,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The points below a cluster of a level, as a range of positions in the shell.
+    ///
+    /// # Panics
+    /// If the cluster is not one of that level.
+    pub fn points_below(&self, level: u32, cluster: &Cluster) -> core::ops::Range<usize> {
+        let (mut first, mut last) = (cluster.first, cluster.first + cluster.count - 1);
+        for below in level + 1..=self.level_count() {
+            let clusters = self.level(below);
+            first = clusters[first as usize].first;
+            let end = &clusters[last as usize];
+            last = end.first + end.count - 1;
+        }
+        first as usize..last as usize + 1
+    }
+
+    /// Number of points N_P.
+    pub fn point_count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Number of levels N_L.
+    pub fn level_count(&self) -> u32 {
+        self.level_starts.len() as u32 - 1
+    }
+
+    /// The clusters of a level; level 1 is the top with one cluster, level N_L the leaves.
+    ///
+    /// # Panics
+    /// If there is no such level.
+    pub fn level(&self, level: u32) -> &[Cluster] {
+        let [start, end] = [level - 1, level].map(|l| self.level_starts[l as usize] as usize);
+        &self.clusters[start..end]
+    }
+
+    /// Position P of a point in metres in the shell frame.
+    pub fn point(&self, index: usize) -> Vec3 {
+        Vec3::from_array(self.points[index])
+    }
+
+    /// Unit inward normal n of a point in the shell frame.
+    pub fn normal(&self, index: usize) -> Vec3 {
+        Vec3::from_array(self.normals[index])
+    }
+
+    /// All points, in the order of the leaves.
+    pub fn points(&self) -> &[[f32; 3]] {
+        &self.points
+    }
+
+    /// All normals, in the order of the points.
+    pub fn normals(&self) -> &[[f32; 3]] {
+        &self.normals
+    }
+
+    /// All clusters, level by level from the top.
+    pub fn clusters(&self) -> &[Cluster] {
+        &self.clusters
+    }
+
+    /// Where each level starts among the clusters, with the end of the last level behind.
+    pub fn level_starts(&self) -> &[u32] {
+        &self.level_starts
+    }
+
+    /// A box around all points, in the shell frame.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The same tree owning its data.
+    #[cfg(feature = "alloc")]
+    pub fn into_owned(self) -> PointSphereTree<'static> {
+        PointSphereTree {
+            points: self.points.into_owned(),
+            normals: self.normals.into_owned(),
+            clusters: self.clusters.into_owned(),
+            level_starts: self.level_starts.into_owned(),
+            bounds: self.bounds,
+        }
+    }
+}
