@@ -1,0 +1,47 @@
+//! Builds Voxelmap-Pointshell assets from triangle meshes (section 2.1 of Sagardia, Stouraitis
+//! and Lopes e Silva, 2014).
+//!
+//! ```
+//! use vps_build::{BuildOptions, Mesh, Resolution, build};
+//!
+//! let mesh = Mesh::cuboid([0.2, 0.1, 0.1])?;
+//! let options = BuildOptions {
+//!     resolution: Resolution::VoxelSize(0.01),
+//!     margin: 3,
+//!     points: 500,
+//!     ..BuildOptions::default()
+//! };
+//! let asset = build(&mesh, &options, &|_stage| ())?;
+//! assert_eq!(asset.voxelmap.grid().dims(), [26, 16, 16]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | step | module | in the paper |
+//! |---|---|---|
+//! | mesh from a file | [`obj`] | |
+//! | surface voxels, fill, layers | `layers` | 2.1.1 |
+//! | distances | `distance` | 2.1.1 |
+//! | pointshell | `sample` | 2.1.2 |
+//! | clusters and their tree | `cluster` | 2.1.2 |
+//! | minimal enclosing balls | [`ball`] | 2.1.2 |
+
+#![forbid(unsafe_code)]
+
+pub mod ball;
+mod build;
+mod cluster;
+mod distance;
+mod file;
+mod kdtree;
+mod layers;
+mod mass;
+mod mesh;
+pub mod obj;
+mod sample;
+mod sat;
+mod triangle;
+
+pub use build::{BuildError, BuildOptions, Encoding, Resolution, Stage, build};
+pub use file::{FileError, read_asset, write_asset, write_atomically};
+pub use mesh::{Mesh, MeshError};
+pub use sample::Samples;

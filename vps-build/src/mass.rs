@@ -1,0 +1,84 @@
+//! Mass properties of the solid within a closed mesh.
+
+use glamx::{DMat3, DVec3};
+use vps_core::MassProperties;
+
+use crate::Mesh;
+
+/// Volume, centre and inertia at density one, exact for a closed mesh that faces outwards: sums
+/// over the tetrahedra between an inner point and each triangle. `None` if the volume is not
+/// positive.
+pub(crate) fn mass_properties(mesh: &Mesh) -> Option<MassProperties> {
+    let (low, high) = mesh.bounds();
+    let origin = low.midpoint(high);
+    let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    for t in 0..mesh.triangles().len() {
+        let [a, b, c] = mesh.corners(t).map(|v| v - origin);
+        let six_volumes = a.dot(b.cross(c));
+        let sum = a + b + c;
+        volume += six_volumes / 6.0;
+        moment += six_volumes / 24.0 * sum;
+        // ∫ p pᵀ over the tetrahedron.
+        let products = [a, b, c, sum].map(|v| outer(v, v));
+        let all = products[0] + products[1] + products[2] + products[3];
+        covariance += all * (six_volumes / 120.0);
+    }
+    let center = moment / volume;
+    covariance -= outer(center, center) * volume;
+    let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+    let diagonal = |i: usize| trace - covariance.col(i)[i];
+    let inertia = [
+        diagonal(0),
+        diagonal(1),
+        diagonal(2),
+        -covariance.col(0)[1],
+        -covariance.col(0)[2],
+        -covariance.col(1)[2],
+    ];
+    let sound = volume > 0.0 && (0..3).all(|i| inertia[i] > 0.0);
+    sound.then(|| MassProperties {
+        volume: volume as f32,
+        center_of_mass: (origin + center).as_vec3().to_array(),
+        inertia: inertia.map(|i| i as f32),
+    })
+}
+
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_and_a_ball_have_the_textbook_values() {
+        let properties = mass_properties(&Mesh::cuboid([1.0, 2.0, 3.0]).unwrap()).unwrap();
+        assert!((properties.volume - 6.0).abs() < 1e-6);
+        for (value, expected) in properties.inertia.iter().zip([6.5, 5.0, 2.5, 0.0, 0.0, 0.0]) {
+            assert!((value - expected).abs() < 1e-5, "{value} {expected}");
+        }
+        let ball = mass_properties(&Mesh::icosphere(0.5, 5).unwrap()).unwrap();
+        let volume = std::f32::consts::PI / 6.0;
+        assert!((ball.volume / volume - 1.0).abs() < 2e-3);
+        assert!((ball.inertia[0] / (0.1 * volume) - 1.0).abs() < 4e-3);
+    }
+
+    #[test]
+    fn moving_changes_only_the_centre() {
+        let mesh = Mesh::cuboid([1.0, 2.0, 3.0]).unwrap();
+        let moved: Vec<_> = mesh.vertices().iter().map(|&v| v + DVec3::new(5.0, -7.0, 9.0)).collect();
+        let moved = Mesh::new(&moved, mesh.triangles()).unwrap();
+        let [a, b] = [mesh, moved].map(|m| mass_properties(&m).unwrap());
+        assert_eq!(b.center_of_mass, [5.0, -7.0, 9.0]);
+        for (a, b) in a.inertia.iter().zip(b.inertia) {
+            assert!((a - b).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn an_open_sheet_has_none() {
+        let v = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        assert!(mass_properties(&Mesh::new(&v, &[[0, 1, 2]]).unwrap()).is_none());
+    }
+}

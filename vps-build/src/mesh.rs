@@ -1,0 +1,259 @@
+use std::collections::HashMap;
+
+use glamx::DVec3;
+
+/// A triangle mesh in metres, checked: its triangles refer to finite vertices and it extends in
+/// space.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Why vertices and triangles are not a [`Mesh`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// Nothing to build from.
+    #[error("the mesh has no triangles")]
+    NoTriangles,
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {0} (counted from 0) is not finite")]
+    Vertex(usize),
+    /// A triangle refers to a vertex that is not there.
+    #[error("triangle {triangle} (counted from 0) refers to vertex {vertex}, but there are {count}")]
+    Index {
+        /// The triangle.
+        triangle: usize,
+        /// What it refers to.
+        vertex: u32,
+        /// Number of vertices.
+        count: usize,
+    },
+    /// All triangles lie in a point or on a line along an axis.
+    #[error("the mesh has no extent: its triangles span {0} x {1} x {2} m")]
+    NoExtent(f64, f64, f64),
+    /// A scale must be positive.
+    #[error("the scale must be positive and finite, not {0}")]
+    Scale(f64),
+}
+
+impl Mesh {
+    /// A mesh of `triangles` over `vertices` (metres), counter-clockwise seen from outside.
+    /// Vertices at the same place become one, so that triangles which meet there are neighbours.
+    ///
+    /// # Errors
+    /// When there is no triangle, a coordinate is not finite, an index is out of range, or the
+    /// mesh has no extent along two axes or more.
+    pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::NoTriangles);
+        }
+        if let Some(i) = vertices.iter().position(|v| !v.is_finite()) {
+            return Err(MeshError::Vertex(i));
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+                return Err(MeshError::Index {
+                    triangle,
+                    vertex,
+                    count: vertices.len(),
+                });
+            }
+        }
+        let mesh = Self::welded(vertices, triangles);
+        let extents = mesh.bounds().1 - mesh.bounds().0;
+        if extents.to_array().iter().filter(|&&e| e > 0.0).count() < 2 {
+            return Err(MeshError::NoExtent(extents.x, extents.y, extents.z));
+        }
+        Ok(mesh)
+    }
+
+    fn welded(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let mut first_at = HashMap::new();
+        let mut kept = Vec::new();
+        let mut weld = |v: u32| {
+            let position = vertices[v as usize];
+            // Adding 0 makes -0 and 0 the same place.
+            let key = (position + 0.0).to_array().map(f64::to_bits);
+            *first_at.entry(key).or_insert_with(|| {
+                kept.push(position);
+                kept.len() as u32 - 1
+            })
+        };
+        let triangles = triangles.iter().map(|t| t.map(&mut weld)).collect();
+        Self {
+            vertices: kept,
+            triangles,
+        }
+    }
+
+    /// A box around the origin with edges of `extents` metres, as twelve triangles.
+    ///
+    /// # Errors
+    /// When two extents or more are zero, or one is not finite.
+    pub fn cuboid(extents: [f64; 3]) -> Result<Self, MeshError> {
+        let half = DVec3::from_array(extents) * 0.5;
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            half * DVec3::new(sign(0), sign(1), sign(2))
+        };
+        let vertices: Vec<_> = (0..8).map(corner).collect();
+        let faces = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles: Vec<_> = faces
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
+        Self::new(&vertices, &triangles)
+    }
+
+    /// A ball around the origin: an icosahedron divided `subdivisions` times, its vertices
+    /// `radius` metres away. It has 20 * 4^subdivisions triangles.
+    ///
+    /// # Errors
+    /// When the radius is zero or not finite.
+    pub fn icosphere(radius: f64, subdivisions: u32) -> Result<Self, MeshError> {
+        let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+        let mut vertices: Vec<DVec3> = Vec::new();
+        for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+            vertices.push(DVec3::new(0.0, a, b));
+            vertices.push(DVec3::new(a, b, 0.0));
+            vertices.push(DVec3::new(b, 0.0, a));
+        }
+        // The faces are the triples of vertices at the edge length 2 from each other.
+        let near = |a: usize, b: usize| vertices[a].distance_squared(vertices[b]) < 4.1;
+        let mut triangles = Vec::new();
+        for a in 0..12 {
+            for b in a + 1..12 {
+                for c in b + 1..12 {
+                    if near(a, b) && near(b, c) && near(a, c) {
+                        let [p, q, r] = [a, b, c].map(|v| vertices[v]);
+                        let outward = (q - p).cross(r - p).dot(p + q + r) > 0.0;
+                        let face = if outward { [a, b, c] } else { [a, c, b] };
+                        triangles.push(face.map(|v| v as u32));
+                    }
+                }
+            }
+        }
+        for _ in 0..subdivisions {
+            let mut middles = HashMap::new();
+            let mut finer = Vec::with_capacity(4 * triangles.len());
+            for [a, b, c] in triangles {
+                let mut middle = |a: u32, b: u32| {
+                    *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                        vertices.push(vertices[a as usize].midpoint(vertices[b as usize]));
+                        vertices.len() as u32 - 1
+                    })
+                };
+                let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+            }
+            triangles = finer;
+            for v in &mut vertices {
+                *v = v.normalize();
+            }
+        }
+        let vertices: Vec<_> = vertices.iter().map(|v| v.normalize() * radius).collect();
+        Self::new(&vertices, &triangles)
+    }
+
+    /// The mesh with all coordinates multiplied.
+    ///
+    /// # Errors
+    /// When the scale is not positive and finite, or makes a coordinate infinite or all extents 0.
+    pub fn scaled(&self, scale: f64) -> Result<Self, MeshError> {
+        if !(scale > 0.0 && scale.is_finite()) {
+            return Err(MeshError::Scale(scale));
+        }
+        let vertices: Vec<_> = self.vertices.iter().map(|&v| v * scale).collect();
+        Self::new(&vertices, &self.triangles)
+    }
+
+    /// All vertices in metres.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// All triangles as positions in [`vertices`](Self::vertices).
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of a triangle.
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|v| self.vertices[v as usize])
+    }
+
+    /// The lowest and the highest corner of the box around the mesh.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let start = (self.vertices[0], self.vertices[0]);
+        self.vertices
+            .iter()
+            .fold(start, |(min, max), &v| (min.min(v), max.max(v)))
+    }
+
+    /// Area of all triangles in m².
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len())
+            .map(|t| {
+                let [a, b, c] = self.corners(t);
+                0.5 * (b - a).cross(c - a).length()
+            })
+            .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_are_closed_and_face_outwards() {
+        for mesh in [
+            Mesh::cuboid([1.0, 2.0, 3.0]).unwrap(),
+            Mesh::icosphere(0.5, 2).unwrap(),
+        ] {
+            let mut edges = HashMap::new();
+            for &[a, b, c] in mesh.triangles() {
+                for edge in [(a, b), (b, c), (c, a)] {
+                    *edges.entry(edge).or_insert(0) += 1;
+                }
+            }
+            for (&(a, b), &count) in &edges {
+                assert_eq!((count, edges.get(&(b, a))), (1, Some(&1)));
+            }
+            for t in 0..mesh.triangles().len() {
+                let [a, b, c] = mesh.corners(t);
+                assert!((b - a).cross(c - a).dot(a + b + c) > 0.0);
+            }
+        }
+        assert_eq!(Mesh::icosphere(1.0, 2).unwrap().triangles().len(), 320);
+        assert!((Mesh::cuboid([1.0, 2.0, 3.0]).unwrap().area() - 22.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn vertices_at_one_place_are_one() {
+        let v = [DVec3::ZERO, DVec3::X, DVec3::Y, -DVec3::ZERO, DVec3::Z];
+        let mesh = Mesh::new(&v, &[[0, 1, 2], [3, 2, 4]]).unwrap();
+        assert_eq!(mesh.vertices().len(), 4);
+        assert_eq!(mesh.triangles()[1][0], 0);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let v = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X * 2.0];
+        let error = |v: &[DVec3], t: &[[u32; 3]]| Mesh::new(v, t).unwrap_err();
+        assert_eq!(error(&v, &[]), MeshError::NoTriangles);
+        assert!(matches!(error(&v, &[[0, 1, 9]]), MeshError::Index { vertex: 9, .. }));
+        assert_eq!(error(&[DVec3::NAN], &[[0, 0, 0]]), MeshError::Vertex(0));
+        assert!(matches!(error(&v, &[[0, 1, 3]]), MeshError::NoExtent(..)));
+        let mesh = Mesh::new(&v, &[[0, 1, 2]]).unwrap();
+        assert!(matches!(mesh.scaled(0.0), Err(MeshError::Scale(_))));
+    }
+}

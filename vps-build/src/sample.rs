@@ -1,0 +1,136 @@
+//! The pointshell (section 2.1.2): centres of surface voxels projected onto the triangles, kept
+//! when they are not too close to each other.
+
+use std::collections::HashMap;
+
+use glamx::DVec3;
+use vps_core::{DistanceField, Vec3, Voxelmap};
+
+use crate::Mesh;
+use crate::layers::for_each_overlapped;
+use crate::triangle::closest_point;
+
+/// How many voxels of the sampling grid two points are apart: √2, as the paper suggests.
+const ALPHA: f64 = std::f64::consts::SQRT_2;
+
+/// How far a point count may be from the one asked for, as a fraction.
+const COUNT_TOLERANCE: f64 = 0.005;
+
+/// Points on a surface, in no order.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    /// Positions in metres.
+    pub positions: Vec<DVec3>,
+    /// Unit inward normals.
+    pub normals: Vec<Vec3>,
+    /// No two points are closer than this, in metres.
+    pub spacing: f64,
+}
+
+impl Samples {
+    /// Every point of the mesh is this close to a sample, in metres: it lies no further than half
+    /// a voxel's diagonal from a projected centre, and that one no further than the spacing from a
+    /// kept one.
+    pub fn coverage(&self) -> f64 {
+        self.spacing * (1.0 + 0.75_f64.sqrt() / ALPHA)
+    }
+}
+
+/// Samples the mesh with about `count` points, with normals from the field.
+pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
+    let target = f64::from(count);
+    // Points spread like this cover about 0.7 of their spacing squared each.
+    let mut spacing = (mesh.area() / (0.7 * target)).sqrt();
+    let mut best: Option<(f64, f64, Vec<DVec3>)> = None;
+    for _ in 0..16 {
+        let positions = spread(mesh, spacing);
+        let found = positions.len() as f64;
+        let off = (found / target - 1.0).abs();
+        if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+            best = Some((off, spacing, positions));
+        }
+        if off <= COUNT_TOLERANCE {
+            break;
+        }
+        spacing *= (found / target).sqrt();
+    }
+    let (_, spacing, positions) = best.expect("at least one round");
+    let normals = inward_normals(mesh, &positions, map);
+    Samples {
+        positions,
+        normals,
+        spacing,
+    }
+}
+
+/// Points no closer than `spacing` to each other, from a lattice of voxels that many times
+/// smaller by [`ALPHA`].
+fn spread(mesh: &Mesh, spacing: f64) -> Vec<DVec3> {
+    let size = spacing / ALPHA;
+    let origin = mesh.bounds().0;
+    let mut kept = Spaced::new(spacing);
+    for t in 0..mesh.triangles().len() {
+        let triangle = mesh.corners(t);
+        for_each_overlapped(triangle, origin, size, |_, center| {
+            kept.offer(closest_point(triangle, center).0);
+        });
+    }
+    kept.points
+}
+
+/// Points that keep a distance, in cells of that size.
+struct Spaced {
+    spacing: f64,
+    points: Vec<DVec3>,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl Spaced {
+    fn new(spacing: f64) -> Self {
+        Self {
+            spacing,
+            points: Vec::new(),
+            cells: HashMap::new(),
+        }
+    }
+
+    /// Keeps the point unless one of those kept is closer than the spacing.
+    fn offer(&mut self, point: DVec3) {
+        let cell = (point / self.spacing).floor().as_i64vec3().to_array();
+        let closest = self.spacing * self.spacing;
+        for dz in -1..=1 {
+            for dy in -1..=1 {
+                for dx in -1..=1 {
+                    let near = [cell[0] + dx, cell[1] + dy, cell[2] + dz];
+                    let near = self.cells.get(&near).into_iter().flatten();
+                    for &other in near {
+                        if self.points[other as usize].distance_squared(point) < closest {
+                            return;
+                        }
+                    }
+                }
+            }
+        }
+        self.cells.entry(cell).or_default().push(self.points.len() as u32);
+        self.points.push(point);
+    }
+}
+
+/// The gradient of the field at each point; where it has none, in the middle of a thin wall, the
+/// normal of the triangle closest to the point, turned inwards.
+fn inward_normals(mesh: &Mesh, positions: &[DVec3], map: &Voxelmap<'_>) -> Vec<Vec3> {
+    let field = map.trilinear();
+    let normal = |&p: &DVec3| {
+        let inward = field.inward_direction(p.as_vec3());
+        if inward != Vec3::ZERO {
+            return inward;
+        }
+        let closest = (0..mesh.triangles().len()).min_by(|&a, &b| {
+            let distance = |t: usize| closest_point(mesh.corners(t), p).0.distance_squared(p);
+            distance(a).total_cmp(&distance(b))
+        });
+        let [a, b, c] = mesh.corners(closest.expect("a mesh has triangles"));
+        (c - a).cross(b - a).normalize_or(DVec3::X).as_vec3()
+    };
+    positions.iter().map(normal).collect()
+}
