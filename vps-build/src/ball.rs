@@ -34,7 +34,10 @@ pub fn minimal_ball(points: &[DVec3]) -> (DVec3, f64) {
 
 /// The smallest ball of at most five points, and which of them carry it.
 fn ball_of_few(points: &[DVec3]) -> ((DVec3, f64), Vec<DVec3>) {
-    let size = points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max);
+    let size = points
+        .iter()
+        .map(|p| p.distance(points[0]))
+        .fold(0.0, f64::max);
     let mut smallest = ((points[0], f64::INFINITY), Vec::new());
     for subset in 1_u32..1 << points.len() {
         if subset.count_ones() > 4 {
@@ -57,7 +60,10 @@ fn ball_of_few(points: &[DVec3]) -> ((DVec3, f64), Vec<DVec3>) {
     if smallest.1.is_empty() {
         // All subsets that span the points are degenerate to rounding: any ball will do.
         let center = points.iter().sum::<DVec3>() / points.len() as f64;
-        let radius = points.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
+        let radius = points
+            .iter()
+            .map(|p| p.distance(center))
+            .fold(0.0, f64::max);
         smallest = ((center, radius), points[..points.len().min(4)].to_vec());
     }
     smallest
@@ -84,7 +90,9 @@ fn circumscribed(points: &[DVec3]) -> Option<(DVec3, f64)> {
         })?;
         rows.swap(column, pivot);
         let head = rows[column].clone();
-        if head[column].abs() <= 1e-14 * edges.iter().map(|e| e.length_squared()).fold(0.0, f64::max) {
+        if head[column].abs()
+            <= 1e-14 * edges.iter().map(|e| e.length_squared()).fold(0.0, f64::max)
+        {
             return None;
         }
         for (r, row) in rows.iter_mut().enumerate() {
@@ -96,7 +104,9 @@ fn circumscribed(points: &[DVec3]) -> Option<(DVec3, f64)> {
             }
         }
     }
-    let center = (0..n).map(|i| edges[i] * (rows[i][n] / rows[i][i])).sum::<DVec3>();
+    let center = (0..n)
+        .map(|i| edges[i] * (rows[i][n] / rows[i][i]))
+        .sum::<DVec3>();
     let radius = points
         .iter()
         .map(|p| p.distance(origin + center))
@@ -118,9 +128,14 @@ mod tests {
             if subset.count_ones() > 4 {
                 continue;
             }
-            let chosen: Vec<_> = (0..n).filter(|i| subset >> i & 1 == 1).map(|i| points[i]).collect();
+            let chosen: Vec<_> = (0..n)
+                .filter(|i| subset >> i & 1 == 1)
+                .map(|i| points[i])
+                .collect();
             if let Some((center, radius)) = circumscribed(&chosen)
-                && points.iter().all(|p| p.distance(center) <= radius * (1.0 + 1e-9) + 1e-12)
+                && points
+                    .iter()
+                    .all(|p| p.distance(center) <= radius * (1.0 + 1e-9) + 1e-12)
             {
                 smallest = smallest.min(radius);
             }
@@ -129,7 +144,9 @@ mod tests {
     }
 
     fn holds(points: &[DVec3], (center, radius): (DVec3, f64)) -> bool {
-        points.iter().all(|p| p.distance(center) <= radius * (1.0 + 1e-9) + 1e-15)
+        points
+            .iter()
+            .all(|p| p.distance(center) <= radius * (1.0 + 1e-9) + 1e-15)
     }
 
     proptest! {
@@ -168,7 +185,9 @@ mod tests {
         let line: Vec<_> = (0..9).map(|i| x * f64::from(i)).collect();
         assert_eq!(minimal_ball(&line), (x * 4.0, 4.0));
         // Nearly the same point.
-        let near: Vec<_> = (0..9).map(|i| x + DVec3::Y * (1e-17 * f64::from(i))).collect();
+        let near: Vec<_> = (0..9)
+            .map(|i| x + DVec3::Y * (1e-17 * f64::from(i)))
+            .collect();
         assert!(holds(&near, minimal_ball(&near)));
     }
 }

@@ -82,13 +82,24 @@ fn assemble(samples: &Samples, levels: &[Level]) -> Result<PointSphereTree<'stat
     for (new, &old) in order.iter().enumerate() {
         new_place[old] = new as u32;
     }
-    let points: Vec<_> = order.iter().map(|&p| samples.positions[p].as_vec3().to_array()).collect();
-    let normals: Vec<_> = order.iter().map(|&p| samples.normals[p].to_array()).collect();
+    let points: Vec<_> = order
+        .iter()
+        .map(|&p| samples.positions[p].as_vec3().to_array())
+        .collect();
+    let normals: Vec<_> = order
+        .iter()
+        .map(|&p| samples.normals[p].to_array())
+        .collect();
     for cluster in &mut clusters {
         cluster.parent_point = new_place[cluster.parent_point as usize];
     }
     wrap_in_balls(&mut clusters, &level_starts, &points);
-    PointSphereTree::new(points.into(), normals.into(), clusters.into(), level_starts.into())
+    PointSphereTree::new(
+        points.into(),
+        normals.into(),
+        clusters.into(),
+        level_starts.into(),
+    )
 }
 
 fn wrap_in_balls(clusters: &mut [Cluster], level_starts: &[u32], points: &[[f32; 3]]) {
@@ -102,23 +113,29 @@ fn wrap_in_balls(clusters: &mut [Cluster], level_starts: &[u32], points: &[[f32;
                 (first as usize, last as usize + 1)
             } else {
                 let start = level_starts[level + 1];
-                (below[(start + first) as usize].0, below[(start + last) as usize].1)
+                (
+                    below[(start + first) as usize].0,
+                    below[(start + last) as usize].1,
+                )
             };
         }
     }
-    clusters.par_iter_mut().zip(below).for_each(|(cluster, (start, end))| {
-        let held: Vec<_> = points[start..end]
-            .iter()
-            .map(|&p| Vec3::from_array(p).as_dvec3())
-            .collect();
-        let center = minimal_ball(&held).0.as_vec3();
-        cluster.center = center.to_array();
-        // Measured from the rounded centre as a query measures it, so no point is left out.
-        cluster.radius = points[start..end]
-            .iter()
-            .map(|&p| center.distance(Vec3::from_array(p)))
-            .fold(0.0, f32::max);
-    });
+    clusters
+        .par_iter_mut()
+        .zip(below)
+        .for_each(|(cluster, (start, end))| {
+            let held: Vec<_> = points[start..end]
+                .iter()
+                .map(|&p| Vec3::from_array(p).as_dvec3())
+                .collect();
+            let center = minimal_ball(&held).0.as_vec3();
+            cluster.center = center.to_array();
+            // Measured from the rounded centre as a query measures it, so no point is left out.
+            cluster.radius = points[start..end]
+                .iter()
+                .map(|&p| center.distance(Vec3::from_array(p)))
+                .fold(0.0, f32::max);
+        });
 }
 
 /// Divides points into clusters of about `size`, one after the other: each takes the points
@@ -141,7 +158,11 @@ fn group(points: &[DVec3], size: usize, rng: &mut ChaCha8Rng) -> Vec<Vec<usize>>
     }
     let regrouped = regroup_far_points(points, clusters.clone());
     // With nothing but outliers a level would not shrink.
-    if 4 * regrouped.len() <= 3 * points.len() { regrouped } else { clusters }
+    if 4 * regrouped.len() <= 3 * points.len() {
+        regrouped
+    } else {
+        clusters
+    }
 }
 
 /// The repair of section 2.1.2: points too far from their cluster's parent point join the cluster

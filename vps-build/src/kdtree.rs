@@ -46,7 +46,11 @@ impl<'p> KdTree<'p> {
                     let parent = &tree.nodes[(i - 1) / 2];
                     let (start, end) = (parent.start as usize, parent.end as usize);
                     let middle = usize::midpoint(start, end);
-                    if i % 2 == 1 { (start, middle) } else { (middle, end) }
+                    if i % 2 == 1 {
+                        (start, middle)
+                    } else {
+                        (middle, end)
+                    }
                 }
             };
             let range = &mut tree.order[start..end];

@@ -117,13 +117,16 @@ pub(crate) fn layers(grid: &Grid, places: &[Place]) -> Vec<i16> {
     }
     for direction in [1, -1] {
         for step in 0..nx * ny * nz {
-            let i = if direction == 1 { step } else { nx * ny * nz - 1 - step };
+            let i = if direction == 1 {
+                step
+            } else {
+                nx * ny * nz - 1 - step
+            };
             let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
             let mut layer = layers[i as usize];
             for &(dx, dy, dz) in &before {
                 let (x, y, z) = (x + direction * dx, y + direction * dy, z + direction * dz);
-                let in_grid =
-                    (0..nx).contains(&x) && (0..ny).contains(&y) && (0..nz).contains(&z);
+                let in_grid = (0..nx).contains(&x) && (0..ny).contains(&y) && (0..nz).contains(&z);
                 if in_grid {
                     let neighbour = layers[((z * ny + y) * nx + x) as usize];
                     layer = layer.min(neighbour.saturating_add(1));
@@ -157,7 +160,11 @@ mod tests {
             for y in 0..15 {
                 for x in 0..15 {
                     // Chebyshev distance from the centre voxel, 7.
-                    let out = [x, y, z].map(|c: i32| (c - 7).abs()).into_iter().max().unwrap();
+                    let out = [x, y, z]
+                        .map(|c: i32| (c - 7).abs())
+                        .into_iter()
+                        .max()
+                        .unwrap();
                     let i = grid.index([x, y, z].map(|c| c as u32));
                     assert_eq!(i32::from(layers[i]), 4 - out, "{x} {y} {z}");
                     let place = match out.cmp(&4) {

@@ -55,7 +55,11 @@ mod tests {
     fn a_box_and_a_ball_have_the_textbook_values() {
         let properties = mass_properties(&Mesh::cuboid([1.0, 2.0, 3.0]).unwrap()).unwrap();
         assert!((properties.volume - 6.0).abs() < 1e-6);
-        for (value, expected) in properties.inertia.iter().zip([6.5, 5.0, 2.5, 0.0, 0.0, 0.0]) {
+        for (value, expected) in properties
+            .inertia
+            .iter()
+            .zip([6.5, 5.0, 2.5, 0.0, 0.0, 0.0])
+        {
             assert!((value - expected).abs() < 1e-5, "{value} {expected}");
         }
         let ball = mass_properties(&Mesh::icosphere(0.5, 5).unwrap()).unwrap();
@@ -67,7 +71,11 @@ mod tests {
     #[test]
     fn moving_changes_only_the_centre() {
         let mesh = Mesh::cuboid([1.0, 2.0, 3.0]).unwrap();
-        let moved: Vec<_> = mesh.vertices().iter().map(|&v| v + DVec3::new(5.0, -7.0, 9.0)).collect();
+        let moved: Vec<_> = mesh
+            .vertices()
+            .iter()
+            .map(|&v| v + DVec3::new(5.0, -7.0, 9.0))
+            .collect();
         let moved = Mesh::new(&moved, mesh.triangles()).unwrap();
         let [a, b] = [mesh, moved].map(|m| mass_properties(&m).unwrap());
         assert_eq!(b.center_of_mass, [5.0, -7.0, 9.0]);

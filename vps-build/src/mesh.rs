@@ -20,7 +20,9 @@ pub enum MeshError {
     #[error("vertex {0} (counted from 0) is not finite")]
     Vertex(usize),
     /// A triangle refers to a vertex that is not there.
-    #[error("triangle {triangle} (counted from 0) refers to vertex {vertex}, but there are {count}")]
+    #[error(
+        "triangle {triangle} (counted from 0) refers to vertex {vertex}, but there are {count}"
+    )]
     Index {
         /// The triangle.
         triangle: usize,
@@ -121,7 +123,12 @@ impl Mesh {
     pub fn icosphere(radius: f64, subdivisions: u32) -> Result<Self, MeshError> {
         let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
         let mut vertices: Vec<DVec3> = Vec::new();
-        for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+        for (a, b) in [
+            (1.0, golden),
+            (-1.0, golden),
+            (1.0, -golden),
+            (-1.0, -golden),
+        ] {
             vertices.push(DVec3::new(0.0, a, b));
             vertices.push(DVec3::new(a, b, 0.0));
             vertices.push(DVec3::new(b, 0.0, a));
@@ -250,7 +257,10 @@ mod tests {
         let v = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X * 2.0];
         let error = |v: &[DVec3], t: &[[u32; 3]]| Mesh::new(v, t).unwrap_err();
         assert_eq!(error(&v, &[]), MeshError::NoTriangles);
-        assert!(matches!(error(&v, &[[0, 1, 9]]), MeshError::Index { vertex: 9, .. }));
+        assert!(matches!(
+            error(&v, &[[0, 1, 9]]),
+            MeshError::Index { vertex: 9, .. }
+        ));
         assert_eq!(error(&[DVec3::NAN], &[[0, 0, 0]]), MeshError::Vertex(0));
         assert!(matches!(error(&v, &[[0, 1, 3]]), MeshError::NoExtent(..)));
         let mesh = Mesh::new(&v, &[[0, 1, 2]]).unwrap();

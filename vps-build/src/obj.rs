@@ -100,7 +100,10 @@ fn first_bad_line(text: &[u8]) -> Option<(usize, String)> {
             return Some((line, "not text: is this an OBJ file?".into()));
         }
     };
-    let vertex_count = text.lines().filter(|l| l.trim_start().starts_with("v ")).count();
+    let vertex_count = text
+        .lines()
+        .filter(|l| l.trim_start().starts_with("v "))
+        .count();
     let mut seen = 0_i64;
     for (i, line) in text.lines().enumerate() {
         let mut words = line.split_whitespace();
@@ -169,7 +172,8 @@ mod tests {
 
     #[test]
     fn quads_and_several_objects_become_one_mesh() {
-        let text = "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\no b\nv 0 0 1\nf 1//1 -1 2\n";
+        let text =
+            "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\no b\nv 0 0 1\nf 1//1 -1 2\n";
         let mesh = parse(text.as_bytes()).unwrap();
         assert_eq!(mesh.triangles().len(), 3);
         assert_eq!(mesh.vertices().len(), 5);

@@ -111,7 +111,10 @@ impl Spaced {
                 }
             }
         }
-        self.cells.entry(cell).or_default().push(self.points.len() as u32);
+        self.cells
+            .entry(cell)
+            .or_default()
+            .push(self.points.len() as u32);
         self.points.push(point);
     }
 }

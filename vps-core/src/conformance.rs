@@ -8,7 +8,9 @@ use crate::DistanceField;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Violation {
     /// The bound of a ball is below the penetration of a point in it.
-    #[error("the ball around {center} of radius {radius} m has bound {bound} m, but {point} in it has {penetration} m")]
+    #[error(
+        "the ball around {center} of radius {radius} m has bound {bound} m, but {point} in it has {penetration} m"
+    )]
     Bound {
         /// Centre of the ball.
         center: Vec3,

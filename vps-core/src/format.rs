@@ -137,7 +137,9 @@ impl<'a> Asset<'a> {
     /// When the bytes are not a sound asset of this version, at an address that is a multiple
     /// of 8.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FormatError> {
-        let start = bytes.get(..size_of::<Header>()).ok_or(FormatError::Foreign)?;
+        let start = bytes
+            .get(..size_of::<Header>())
+            .ok_or(FormatError::Foreign)?;
         let header: Header = bytemuck::pod_read_unaligned(start);
         if header.magic != MAGIC {
             return Err(FormatError::Foreign);

@@ -58,9 +58,9 @@ mod voxelmap;
 pub use aabb::Aabb;
 pub use asset::{Asset, MassProperties};
 pub use field::DistanceField;
-pub use format::{FormatError, VPS_VERSION};
 #[cfg(feature = "alloc")]
 pub use format::encode;
+pub use format::{FormatError, VPS_VERSION};
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
 pub use grid::{Grid, GridError};
 pub use manifold::ContactManifold;

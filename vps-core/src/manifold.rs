@@ -93,7 +93,10 @@ fn best_edge(corners: &[Vec3], point: Vec3, normal: Vec3) -> (usize, f32) {
             };
             (0..corners.len())
                 .map(|i| (i, gain(i)))
-                .fold((0, 0.0), |most, edge| if edge.1 > most.1 { edge } else { most })
+                .fold(
+                    (0, 0.0),
+                    |most, edge| if edge.1 > most.1 { edge } else { most },
+                )
         }
     }
 }

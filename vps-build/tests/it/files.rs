@@ -1,0 +1,150 @@
+//! Files: what is written comes back, and damage is noticed.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use crate::support::asset;
+use proptest::prelude::*;
+use vps_build::{Encoding, Mesh, read_asset, write_asset};
+use vps_core::{Asset, FormatError, encode};
+
+/// Bytes at an address that is a multiple of 8.
+fn aligned(bytes: &[u8]) -> Vec<u64> {
+    let mut words = vec![0_u64; bytes.len().div_ceil(8)];
+    bytemuck::cast_slice_mut::<u64, u8>(&mut words)[..bytes.len()].copy_from_slice(bytes);
+    words
+}
+
+fn parse(bytes: &[u8]) -> Result<(), FormatError> {
+    let words = aligned(bytes);
+    Asset::from_bytes(&bytemuck::cast_slice(&words)[..bytes.len()]).map(|_| ())
+}
+
+fn small() -> Asset<'static> {
+    asset(
+        &Mesh::cuboid([0.3, 0.2, 0.1]).unwrap(),
+        60,
+        Encoding::Distances(None),
+    )
+}
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("vps-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn an_asset_comes_back_as_it_was() {
+    let folder = Folder::new("round-trip");
+    let path = folder.0.join("deep").join("asset.vps");
+    let asset = small();
+    write_asset(&path, &asset).unwrap();
+    let back = read_asset(&path).unwrap();
+    assert!(encode(&back) == encode(&asset));
+    assert_eq!(back.mass, asset.mass);
+    assert_eq!(
+        std::fs::read_dir(path.parent().unwrap()).unwrap().count(),
+        1
+    );
+}
+
+#[test]
+fn other_files_are_refused() {
+    let good = encode(&small());
+    assert_eq!(parse(&good), Ok(()));
+    assert_eq!(parse(b""), Err(FormatError::Foreign));
+    assert_eq!(parse(&[b'x'; 500]), Err(FormatError::Foreign));
+    let mut newer = good.clone();
+    newer[8] = 9;
+    assert_eq!(parse(&newer), Err(FormatError::Version(9)));
+    let mut long = good.clone();
+    long.push(0);
+    assert!(matches!(parse(&long), Err(FormatError::Length { .. })));
+    // A header that asks for more than there can be.
+    let mut huge = good;
+    huge[24..32].fill(0xff);
+    assert!(matches!(parse(&huge), Err(FormatError::Length { .. })));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+    #[test]
+    fn damage_is_noticed(
+        at in any::<prop::sample::Index>(), bit in 0..8_u32, cut in any::<prop::sample::Index>(),
+    ) {
+        let good = encode(&small());
+        let mut flipped = good.clone();
+        let at = at.index(good.len());
+        flipped[at] ^= 1 << bit;
+        // Zeros of the header mean nothing yet.
+        prop_assert!(parse(&flipped).is_err() || (48..64).contains(&at));
+        prop_assert!(parse(&good[..cut.index(good.len())]).is_err());
+    }
+}
+
+fn vps_build(arguments: &[&str]) -> (Option<i32>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_vps-build"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    (
+        output.status.code(),
+        String::from_utf8(output.stderr).unwrap(),
+    )
+}
+
+#[test]
+fn the_command_builds_and_complains_in_one_line() {
+    let folder = Folder::new("command");
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    std::fs::write(path("good.obj"), tetrahedron).unwrap();
+    std::fs::write(path("nan.obj"), tetrahedron.replace("v 0 1 0", "v 0 nan 0")).unwrap();
+    std::fs::write(path("range.obj"), tetrahedron.replace("f 1 3 2", "f 1 3 8")).unwrap();
+    std::fs::write(path("open.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    std::fs::write(path("empty.obj"), "").unwrap();
+    let out = path("out.vps");
+    let fails = |mesh: &str, options: &[&str], expected: &str| {
+        let mesh = path(mesh);
+        let (code, message) = vps_build(&[&["build", &mesh, "-o", &out], options].concat());
+        assert_eq!(code, Some(2), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert!(
+            message.contains(&mesh) && message.contains(expected),
+            "{message}"
+        );
+    };
+    fails("missing.obj", &[], "No such file");
+    fails("nan.obj", &[], "nan.obj:3: `nan`");
+    fails("range.obj", &[], "range.obj:5: ");
+    fails("empty.obj", &[], "no triangles");
+    fails("open.obj", &[], "encloses no volume");
+    fails("good.obj", &["--voxel-size", "1e-5"], "MiB");
+    fails("good.obj", &["--voxel-size", "0"], "voxel size");
+    fails("good.obj", &["--scale", "0"], "scale");
+    fails("good.obj", &["--precision", "9"], "do not fit 16 bits");
+    fails("good.obj", &["-k", "1"], "branching");
+    assert!(!folder.0.join("out.vps").exists());
+    let (code, message) = vps_build(&["build", &path("good.obj"), "-o", &out, "--voxels", "20"]);
+    assert_eq!((code, message.as_str()), (Some(0), ""));
+    assert!(
+        read_asset(&folder.0.join("out.vps"))
+            .unwrap()
+            .tree
+            .point_count()
+            > 100
+    );
+    // Five meshes and one asset; nothing half-written is left.
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 6);
+}

@@ -1,0 +1,317 @@
+//! What must hold for any mesh and any pose.
+
+use crate::support::{asset, bumpy_mesh, direction, encoding, exact_penetration, pose, vector};
+use glamx::DVec3;
+use proptest::prelude::*;
+use vps_build::{BuildOptions, Encoding, Mesh, Resolution, build};
+use vps_core::conformance::check_ball;
+use vps_core::{
+    Asset, Ball, Contact, Cuboid, DistanceField, HalfSpace, Pose3, Query, Vec3, Voxelmap, encode,
+};
+
+fn contacts<F: DistanceField>(query: &Query<'_, F>) -> Vec<Contact> {
+    let mut contacts = Vec::new();
+    query.for_each_contact(|c| contacts.push(c));
+    contacts
+}
+
+fn flat_contacts<F: DistanceField>(query: &Query<'_, F>) -> Vec<Contact> {
+    let mut contacts = Vec::new();
+    query.for_each_contact_flat(|c| contacts.push(c));
+    contacts
+}
+
+/// The tree gives the contacts of the flat test, and everything derived from them agrees.
+fn check_query<F: DistanceField>(
+    shell: &Asset<'_>,
+    field: &F,
+    pose: Pose3,
+    margin: f32,
+) -> Result<(), TestCaseError> {
+    let query = Query::new(&shell.tree, field, pose).with_margin(margin);
+    let found = contacts(&query);
+    let flat = flat_contacts(&query);
+    prop_assert_eq!(&found, &flat);
+    prop_assert_eq!(query.touches(), !flat.is_empty());
+    let deepest = flat
+        .iter()
+        .map(|c| c.penetration)
+        .fold(f32::NEG_INFINITY, f32::max);
+    prop_assert_eq!(
+        query.deepest().map(|c| c.penetration),
+        flat.first().map(|_| deepest)
+    );
+    let center = shell.mass.center();
+    let (mut force, mut torque, mut size) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+    for c in flat.iter().filter(|c| c.penetration > 0.0) {
+        let f = c.penetration * c.normal;
+        force += f;
+        torque += (c.position - center).cross(f);
+        size += c.penetration;
+    }
+    let wrench = query.wrench(center);
+    prop_assert!((wrench.force - force).length() <= 1e-5 * size);
+    prop_assert!((wrench.torque - torque).length() <= 1e-5 * size);
+    Ok(())
+}
+
+/// Both samplings of a map, and a field of another kind.
+fn check_all_fields(
+    shell: &Asset<'_>,
+    map: &Voxelmap<'_>,
+    pose: Pose3,
+    margin: f32,
+) -> Result<(), TestCaseError> {
+    check_query(shell, &map.local(), pose, margin)?;
+    check_query(shell, &map.trilinear(), pose, margin)?;
+    check_query(shell, &Ball::new(0.4), pose, margin)?;
+    check_query(shell, &Cuboid::new(Vec3::new(0.5, 0.1, 0.4)), pose, margin)?;
+    check_query(
+        shell,
+        &HalfSpace::new(Vec3::new(0.1, 1.0, 0.0)),
+        pose,
+        margin,
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn the_tree_finds_what_brute_force_finds(
+        shell in bumpy_mesh(),
+        field in bumpy_mesh(),
+        points in 1..600_u32,
+        encoding in encoding(),
+        poses in prop::collection::vec((pose(0.9), 0.0..0.05_f32), 8),
+    ) {
+        let shell = asset(&shell, points, Encoding::Distances(None));
+        let field = asset(&field, 10, encoding);
+        for (pose, margin) in poses {
+            check_all_fields(&shell, &field.voxelmap, pose, margin)?;
+        }
+    }
+
+    /// Validation of the tree promises the same; here it is counted out.
+    #[test]
+    fn points_lie_in_one_leaf_and_in_all_balls_above(
+        mesh in bumpy_mesh(), points in 1..900_u32, branching in 2..20_u32, seed in any::<u64>(),
+    ) {
+        let options = BuildOptions {
+            resolution: Resolution::VoxelsAlongLongest(12),
+            points,
+            branching,
+            seed,
+            ..BuildOptions::default()
+        };
+        let tree = build(&mesh, &options, &|_| ()).unwrap().tree;
+        let mut leaves_of = vec![0; tree.point_count()];
+        for level in 1..=tree.level_count() {
+            let mut seen = vec![0; tree.point_count()];
+            for cluster in tree.level(level) {
+                let center = Vec3::from_array(cluster.center);
+                for p in tree.points_below(level, cluster) {
+                    seen[p] += 1;
+                    prop_assert!(center.distance(tree.point(p)) <= cluster.radius);
+                }
+            }
+            prop_assert!(seen.iter().all(|&n| n == 1));
+        }
+        for leaf in tree.level(tree.level_count()) {
+            for p in leaf.first..leaf.first + leaf.count {
+                leaves_of[p as usize] += 1;
+            }
+        }
+        prop_assert!(leaves_of.iter().all(|&n| n == 1));
+        prop_assert_eq!(tree.level(1).len(), 1);
+    }
+
+    #[test]
+    fn voxel_values_are_within_their_error(
+        mesh in bumpy_mesh(), encoding in encoding(),
+        at in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 60),
+    ) {
+        let asset = asset(&mesh, 10, encoding);
+        let map = &asset.voxelmap;
+        let accuracy = map.accuracy();
+        let dims = map.grid().dims();
+        for at in at {
+            let voxel = [0, 1, 2].map(|a| at[a].index(dims[a] as usize) as u32);
+            let stored = map.center_penetration(voxel);
+            let exact = exact_penetration(&mesh, map.grid().center(voxel).as_dvec3()) as f32;
+            let off = (stored - exact).abs();
+            if stored.abs() <= accuracy.band_m {
+                prop_assert!(off <= accuracy.near_m, "{voxel:?}: {stored}, exact {exact}");
+            } else {
+                prop_assert!(off <= accuracy.far_m, "{voxel:?}: {stored}, exact {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn voxelmaps_conform(
+        mesh in bumpy_mesh(), encoding in encoding(),
+        balls in prop::collection::vec(
+            (vector(1.2), 0.0..0.5_f32, direction(), 0.0..1.0_f32, direction()), 100),
+    ) {
+        let asset = asset(&mesh, 10, encoding);
+        let map = &asset.voxelmap;
+        for (center, radius, towards, how_far, normal) in balls {
+            let inside = towards * how_far;
+            // Fields promise a bound for what may be a contact: far away, layers are coarser.
+            let penetration = map.local().penetration(center + inside * radius, normal);
+            if penetration >= -map.accuracy().band_m + 2.0 * map.grid().voxel_size() {
+                check_ball(&map.local(), center, radius, inside, normal).unwrap();
+                check_ball(&map.trilinear(), center, radius, inside, normal).unwrap();
+            }
+        }
+    }
+
+    /// Moving both bodies together leaves everything as it was, but for rounding.
+    #[test]
+    fn a_common_motion_changes_nothing(
+        shell in bumpy_mesh(), field in bumpy_mesh(),
+        a in pose(0.6), b in pose(0.6), motion in pose(5.0),
+    ) {
+        let shell = asset(&shell, 400, Encoding::Distances(None));
+        let field = asset(&field, 10, Encoding::Distances(None));
+        let trilinear = field.voxelmap.trilinear();
+        let before = Query::new(&shell.tree, &trilinear, b.inv_mul(&a));
+        let (moved_a, moved_b) = (motion * a, motion * b);
+        let after = Query::new(&shell.tree, &trilinear, moved_b.inv_mul(&moved_a));
+        let tolerance = 1e-4;
+        let (before_all, after_all) = (contacts(&before), contacts(&after));
+        for (these, those) in [(&before_all, &after_all), (&after_all, &before_all)] {
+            for c in these.iter().filter(|c| c.penetration > tolerance) {
+                let same = those.iter().find(|d| d.point == c.point);
+                prop_assert!(same.is_some_and(|d| (d.penetration - c.penetration).abs() < tolerance));
+            }
+        }
+        let [w, v] = [before, after].map(|q| q.wrench(Vec3::ZERO));
+        let tolerance = tolerance * (1 + before_all.len()) as f32;
+        prop_assert!((w.force - v.force).length() < tolerance);
+        prop_assert!((w.torque - v.torque).length() < tolerance);
+    }
+
+    /// Penetrations of sampled solids against those of the solids themselves.
+    #[test]
+    fn penetration_is_within_its_error_of_a_ball_and_a_box(
+        points in prop::collection::vec((vector(0.62), direction()), 200),
+    ) {
+        for encoding in [Encoding::Distances(None), Encoding::Layers] {
+            let half = Vec3::new(0.5, 0.3, 0.4);
+            let mesh = Mesh::cuboid((half * 2.0).as_dvec3().to_array()).unwrap();
+            check_against(&asset(&mesh, 10, encoding).voxelmap, &Cuboid::new(half), 0.0, &points)?;
+            // The facets of the mesh lie this far within the ball at most.
+            let mesh = Mesh::icosphere(0.5, 4).unwrap();
+            let facets = mesh.triangles().iter().map(|t| {
+                let [a, b, c] = t.map(|v| mesh.vertices()[v as usize]);
+                0.5 - ((a + b + c) / 3.0).length()
+            });
+            let facets = facets.fold(0.0, f64::max) as f32;
+            check_against(&asset(&mesh, 10, encoding).voxelmap, &Ball::new(0.5), facets, &points)?;
+        }
+    }
+}
+
+fn check_against(
+    map: &Voxelmap<'_>,
+    exact: &impl DistanceField,
+    mesh_error: f32,
+    points: &[(Vec3, Vec3)],
+) -> Result<(), TestCaseError> {
+    let (local, trilinear) = (map.local(), map.trilinear());
+    for &(p, normal) in points {
+        let exact = exact.penetration(p, normal);
+        // Near the surface the error bound holds as it stands.
+        let near = exact.abs() + 2.0 * map.grid().voxel_size() <= map.accuracy().band_m;
+        let beyond = if near { 0.0 } else { map.accuracy().far_m };
+        for (sampled, bound) in [
+            (local.penetration(p, normal), local.error_bound()),
+            (trilinear.penetration(p, normal), trilinear.error_bound()),
+        ] {
+            let off = (sampled - exact).abs();
+            prop_assert!(
+                off <= bound + beyond + mesh_error,
+                "{p}: {sampled}, exact {exact}"
+            );
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #[test]
+    fn analytic_fields_conform(
+        center in vector(1.0), radius in 0.0..0.8_f32,
+        towards in direction(), how_far in 0.0..1.0_f32, size in 0.1..0.7_f32,
+    ) {
+        let inside = towards * how_far;
+        check_ball(&Ball::new(size), center, radius, inside, towards).unwrap();
+        check_ball(&Cuboid::new(Vec3::new(size, 0.2, 0.5)), center, radius, inside, towards).unwrap();
+        check_ball(&HalfSpace::new(towards), center, radius, inside, towards).unwrap();
+    }
+}
+
+#[test]
+fn points_keep_their_distance_and_cover_the_surface() {
+    let mesh = Mesh::cuboid([1.0, 0.6, 0.3]).unwrap();
+    for points in [50, 700, 5000] {
+        let asset = asset(&mesh, points, Encoding::Distances(None));
+        let found = asset.tree.point_count() as f64;
+        let off = (found / f64::from(points) - 1.0).abs();
+        assert!(off < 0.02, "{found} in place of {points}");
+        // Of a surface this flat, a point's share says how far the next may be.
+        let spacing = (mesh.area() / found).sqrt();
+        let closest = |p: DVec3, skip: usize| {
+            (0..asset.tree.point_count())
+                .filter(|&i| i != skip)
+                .map(|i| asset.tree.point(i).as_dvec3().distance(p))
+                .fold(f64::INFINITY, f64::min)
+        };
+        for i in (0..asset.tree.point_count()).step_by(7) {
+            let p = asset.tree.point(i).as_dvec3();
+            assert!(closest(p, i) > 0.6 * spacing);
+            assert!(exact_penetration(&mesh, p).abs() < 1e-6);
+            let inward = asset.tree.normal(i).as_dvec3();
+            assert!(exact_penetration(&mesh, p + inward * 0.01) > 0.0);
+        }
+        // The corners are the hardest to reach.
+        for &corner in mesh.vertices() {
+            assert!(closest(corner, usize::MAX) < 1.7 * spacing);
+        }
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let mesh = Mesh::icosphere(0.5, 3).unwrap();
+    let bytes = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| encode(&asset(&mesh, 500, Encoding::Distances(None))))
+    };
+    let one = bytes(1);
+    assert!(one == bytes(2));
+    assert!(one == bytes(5));
+}
+
+#[test]
+fn broken_poses_give_no_contact() {
+    let asset = asset(
+        &Mesh::icosphere(0.5, 2).unwrap(),
+        100,
+        Encoding::Distances(None),
+    );
+    let field = asset.voxelmap.trilinear();
+    for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let pose = Pose3::from_translation(Vec3::new(0.0, broken, 0.0));
+        for margin in [0.0, 0.1] {
+            let query = Query::new(&asset.tree, &field, pose);
+            assert_eq!(query.with_margin(margin).deepest(), None);
+        }
+    }
+}

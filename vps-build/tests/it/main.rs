@@ -1,0 +1,5 @@
+//! Tests of the whole builder.
+
+mod files;
+mod invariants;
+mod support;

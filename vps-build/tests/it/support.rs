@@ -1,0 +1,94 @@
+//! Random solids and poses.
+
+use glamx::DVec3;
+use proptest::prelude::*;
+use vps_build::{BuildOptions, Encoding, Mesh, Resolution, build};
+use vps_core::{Asset, Pose3, Quat, Vec3};
+
+/// A bumpy ball about 1 m across: closed, facing outwards, not convex.
+pub(crate) fn bumpy_mesh() -> impl Strategy<Value = Mesh> {
+    let bump = (direction(), -0.35..0.35_f64, 1.0..12.0_f64);
+    prop::collection::vec(bump, 0..6).prop_map(|bumps| {
+        let ball = Mesh::icosphere(0.5, 3).unwrap();
+        let vertices: Vec<_> = ball
+            .vertices()
+            .iter()
+            .map(|v| {
+                let towards = v.normalize();
+                let grow = |(d, height, width): &(Vec3, f64, f64)| {
+                    height * (width * (towards.dot(d.as_dvec3()) - 1.0)).exp()
+                };
+                let height: f64 = bumps.iter().map(grow).sum();
+                *v * (1.0 + height).max(0.2)
+            })
+            .collect();
+        Mesh::new(&vertices, ball.triangles()).unwrap()
+    })
+}
+
+pub(crate) fn asset(mesh: &Mesh, points: u32, encoding: Encoding) -> Asset<'static> {
+    let options = BuildOptions {
+        resolution: Resolution::VoxelsAlongLongest(18),
+        margin: 5,
+        points,
+        encoding,
+        ..BuildOptions::default()
+    };
+    build(mesh, &options, &|_| ()).unwrap()
+}
+
+pub(crate) fn encoding() -> impl Strategy<Value = Encoding> {
+    prop_oneof![
+        3 => Just(Encoding::Distances(None)),
+        1 => Just(Encoding::Distances(Some(2))),
+        1 => Just(Encoding::Layers),
+    ]
+}
+
+pub(crate) fn vector(size: f32) -> impl Strategy<Value = Vec3> {
+    prop::array::uniform3(-size..size).prop_map(Vec3::from_array)
+}
+
+pub(crate) fn direction() -> impl Strategy<Value = Vec3> {
+    vector(1.0).prop_map(|v| v.normalize_or(Vec3::Y))
+}
+
+/// Any rotation, and a translation of up to `size` metres along each axis.
+pub(crate) fn pose(size: f32) -> impl Strategy<Value = Pose3> {
+    (direction(), 0.0..6.3_f32, vector(size)).prop_map(|(axis, angle, translation)| {
+        Pose3::from_parts(translation, Quat::from_axis_angle(axis, angle))
+    })
+}
+
+/// Penetration of a point in a mesh by looking at every triangle; its sign is that of the
+/// generalised winding number.
+
+pub(crate) fn exact_penetration(mesh: &Mesh, p: DVec3) -> f64 {
+    let (mut closest, mut solid_angle) = (f64::INFINITY, 0.0);
+    for corners in mesh.triangles() {
+        let t = corners.map(|v| mesh.vertices()[v as usize]);
+        closest = closest.min(triangle_distance(t, p));
+        let [a, b, c] = t.map(|v| v - p);
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+        solid_angle += 2.0 * a.dot(b.cross(c)).atan2(denominator);
+    }
+    let inside = solid_angle > 2.0 * std::f64::consts::PI;
+    if inside { closest } else { -closest }
+}
+
+/// Written unlike the library's: the distance to the plane where the foot lies in the triangle,
+/// otherwise to the edges.
+fn triangle_distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let behind = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) >= 0.0;
+    if normal.length() > 0.0 && behind(a, b) && behind(b, c) && behind(c, a) {
+        return (p - a).dot(normal.normalize()).abs();
+    }
+    let edge = |from: DVec3, to: DVec3| {
+        let along = to - from;
+        let t = ((p - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        p.distance(from + along * if t.is_finite() { t } else { 0.0 })
+    };
+    edge(a, b).min(edge(b, c)).min(edge(c, a))
+}
