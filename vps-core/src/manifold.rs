@@ -11,9 +11,14 @@ pub struct ContactManifold<const N: usize> {
 }
 
 impl<const N: usize> ContactManifold<N> {
-    /// Picks from `contacts`. The area is that of the polygon of the picked points seen along the
-    /// normal of the deepest one; of equally good contacts the first is taken. Costs `N` passes.
-    pub fn spread(contacts: &[Contact]) -> Self {
+    /// Picks from `contacts`, found by a query with `margin` metres. The area is that of the polygon
+    /// of the picked points seen `along` a direction in the shell frame, such as the normal of the
+    /// field at the deepest point.
+    ///
+    /// What a point adds to the area counts less the further outside of the solid it is, down to
+    /// nothing at the margin: a point that touches comes before one just above it. Of equally good
+    /// contacts the first is taken. Costs `N` passes.
+    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
         let nothing = Contact {
             point: 0,
             position: Vec3::ZERO,
@@ -27,7 +32,6 @@ impl<const N: usize> ContactManifold<N> {
         let Some(&deepest) = best(contacts, |c| Some(c.penetration)) else {
             return manifold;
         };
-        let normal = deepest.normal;
         // Corners of the polygon in order, which is not the order of picking.
         let mut ring = [Vec3::ZERO; N];
         if N > 0 {
@@ -37,17 +41,23 @@ impl<const N: usize> ContactManifold<N> {
         while manifold.len < N {
             let corners = &ring[..manifold.len];
             let gain = |c: &Contact| {
-                let (_, gain) = best_edge(corners, c.position, normal);
-                (gain > 0.0).then_some(gain)
+                let (_, area) = best_edge(corners, c.position, along);
+                let outside = (-c.penetration).max(0.0);
+                let weight = if outside > 0.0 {
+                    1.0 - outside / margin
+                } else {
+                    1.0
+                };
+                (area * weight > 0.0).then_some(area * weight)
             };
             let Some(&next) = best(contacts, gain) else {
                 break;
             };
-            let (edge, _) = best_edge(corners, next.position, normal);
+            let (edge, _) = best_edge(corners, next.position, along);
             ring.copy_within(edge + 1..manifold.len, edge + 2);
             ring[edge + 1] = next.position;
             manifold.push(next);
-            if manifold.len == 3 && doubled_area(ring[0], ring[1], ring[2], normal) < 0.0 {
+            if manifold.len == 3 && doubled_area(ring[0], ring[1], ring[2], along) < 0.0 {
                 // From here on the polygon runs counter-clockwise.
                 ring.swap(1, 2);
             }
@@ -122,7 +132,7 @@ mod tests {
     }
 
     fn picked<const N: usize>(contacts: &[Contact]) -> Vec<u32> {
-        let manifold = ContactManifold::<N>::spread(contacts);
+        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1);
         manifold.contacts().iter().map(|c| c.point).collect()
     }
 
@@ -144,6 +154,16 @@ mod tests {
         let mut five = picked::<5>(&contacts);
         five.sort_unstable();
         assert_eq!(five, [0, 2, 4, 20, 24]);
+    }
+
+    #[test]
+    fn a_point_that_touches_comes_before_one_above_it() {
+        let mut contacts = std::vec![contact(0, 0.0, 0.0, 0.01), contact(1, 4.0, 0.0, 0.0)];
+        // A little further out, and half of the margin away.
+        contacts.push(contact(2, 4.5, 0.0, -0.05));
+        assert_eq!(picked::<2>(&contacts), [0, 1]);
+        contacts.remove(1);
+        assert_eq!(picked::<2>(&contacts), [0, 2]);
     }
 
     #[test]

@@ -1,0 +1,124 @@
+//! From the contacts of a query to manifolds of parry.
+
+use rapier3d::math::Pose;
+use rapier3d::parry::query::{
+    ContactManifold as ParryManifold, ContactManifoldsWorkspace, TrackedContact,
+    TypedWorkspaceData, WorkspaceData,
+};
+use rapier3d::parry::shape::PackedFeatureId;
+use vps_core::{Contact, ContactManifold, Vec3};
+
+use crate::pair::Pair;
+
+/// Contacts whose normals differ by less than 5 degrees share a manifold.
+const SAME_NORMAL: f32 = 0.996_2;
+
+/// Most contacts a pair gives: what rapier's solver takes of one manifold (and Bullet's, section
+/// 3.2).
+const MANIFOLD_SIZE: usize = 4;
+
+/// The contacts of a pair, kept from step to step for their memory. Its presence also tells
+/// rapier that the manifolds of the pair may change their order.
+#[derive(Clone, Default)]
+struct Workspace {
+    contacts: Vec<Contact>,
+}
+
+impl WorkspaceData for Workspace {
+    fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
+        TypedWorkspaceData::Custom
+    }
+
+    fn clone_dyn(&self) -> Box<dyn WorkspaceData> {
+        Box::new(self.clone())
+    }
+}
+
+/// A contact between two surfaces.
+pub(crate) struct SurfaceContact {
+    /// Where the shell touches, in the shell frame.
+    pub(crate) on_shell: Vec3,
+    /// The closest point of the field's surface, in the field frame.
+    pub(crate) on_field: Vec3,
+    /// Unit normal out of the field, in the field frame.
+    pub(crate) field_normal: Vec3,
+    /// The same direction reversed, out of the shell, in the shell frame.
+    pub(crate) shell_normal: Vec3,
+}
+
+impl SurfaceContact {
+    /// Takes the normal of the field, which does not depend on how the shell was sampled; where
+    /// the field has none, that of the shell.
+    pub(crate) fn new(pair: &Pair<'_>, shell_to_field: &Pose, contact: &Contact) -> Self {
+        let in_field = shell_to_field.transform_point(contact.position);
+        let mut inward = pair.field().inward_direction(in_field);
+        if inward == Vec3::ZERO {
+            inward = -(shell_to_field.rotation * contact.normal);
+        }
+        Self {
+            on_shell: contact.position,
+            on_field: in_field - inward * contact.penetration,
+            field_normal: -inward,
+            shell_normal: shell_to_field.rotation.inverse() * inward,
+        }
+    }
+}
+
+/// Finds the contacts of a pair and replaces its manifolds by them: the deepest first, then up to
+/// three that spread over the largest area, in one manifold for each normal. What the engine
+/// remembers of a contact stays with the point of the shell.
+pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
+    pair: &Pair<'_>,
+    pos12: &Pose,
+    prediction: f32,
+    manifolds: &mut Vec<ParryManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) {
+    let is_ours = |w: &ContactManifoldsWorkspace| w.0.downcast_ref::<Workspace>().is_some();
+    if !workspace.as_ref().is_some_and(is_ours) {
+        *workspace = Some(Workspace::default().into());
+    }
+    let Some(scratch) = workspace
+        .as_mut()
+        .and_then(|w| w.0.downcast_mut::<Workspace>())
+    else {
+        unreachable!("the workspace was just made");
+    };
+    scratch.contacts.clear();
+    pair.query(pos12)
+        .with_margin(prediction)
+        .for_each_contact(|contact| scratch.contacts.push(contact));
+    let mut old: Vec<_> = manifolds.drain(..).collect();
+    let shell_to_field = pair.shell_to_field(pos12);
+    let by_depth = |a: &&Contact, b: &&Contact| a.penetration.total_cmp(&b.penetration);
+    let Some(deepest) = scratch.contacts.iter().max_by(by_depth) else {
+        return;
+    };
+    let along = SurfaceContact::new(pair, &shell_to_field, deepest).shell_normal;
+    let picked = ContactManifold::<MANIFOLD_SIZE>::spread(&scratch.contacts, along, prediction);
+    for contact in picked.contacts() {
+        let surface = SurfaceContact::new(pair, &shell_to_field, contact);
+        let (n1, n2) = pair.in_order(surface.shell_normal, surface.field_normal);
+        let (p1, p2) = pair.in_order(surface.on_shell, surface.on_field);
+        let shell_point = PackedFeatureId::vertex(contact.point);
+        let (id1, id2) = pair.in_order(shell_point, PackedFeatureId::UNKNOWN);
+        let mut tracked = TrackedContact::new(p1, p2, id1, id2, -contact.penetration);
+        let known = old.iter().flat_map(|m| m.contacts());
+        if let Some(same) = known.into_iter().find(|o| (o.fid1, o.fid2) == (id1, id2)) {
+            tracked.data = same.data;
+        }
+        let fits = |m: &&mut ParryManifold<M, C>| m.local_n1.dot(n1) > SAME_NORMAL;
+        if let Some(manifold) = manifolds.iter_mut().find(fits) {
+            manifold.points.push(tracked);
+            continue;
+        }
+        // The n-th manifold goes on with what the engine keeps of the n-th one.
+        let mut manifold = ParryManifold::<M, C>::new();
+        if let Some(before) = old.get_mut(manifolds.len()) {
+            manifold.data = before.data.clone();
+        }
+        (manifold.local_n1, manifold.local_n2) = (n1, n2);
+        manifold.points.push(tracked);
+        manifolds.push(manifold);
+    }
+}

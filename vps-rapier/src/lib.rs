@@ -1,0 +1,53 @@
+//! Voxelmap-Pointshell collision detection for [rapier](rapier3d): arbitrary closed meshes, also
+//! concave ones, as solid dynamic bodies (section 3 of Sagardia, Stouraitis and Lopes e Silva,
+//! 2014, where the engine was Bullet).
+//!
+//! Two things are needed: a [`VpsShape`] for a collider, and the [`VpsDispatcher`] in the world's
+//! narrow phase, chained to parry's own so that all other pairs collide as before.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use rapier3d::prelude::*;
+//! use vps_build::{BuildOptions, Mesh, build};
+//! use vps_rapier::{VpsShape, narrow_phase};
+//!
+//! let mesh = Mesh::icosphere(0.5, 3)?;
+//! let asset = Arc::new(build(&mesh, &BuildOptions::default(), &|_| ())?);
+//! let mut world = PhysicsWorld { narrow_phase: narrow_phase(), ..PhysicsWorld::default() };
+//! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::cuboid(5.0, 0.1, 5.0));
+//! let above = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
+//! let (ball, _) = world.insert(above, ColliderBuilder::new(VpsShape::new(asset).into()));
+//! for _ in 0..120 {
+//!     world.step();
+//! }
+//! assert!((world.bodies[ball].translation().y - 0.6).abs() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What collides
+//! A VPS shape collides with VPS shapes and with every shape of parry that can project a point:
+//! balls, cuboids and half-spaces through exact distance fields, all others through
+//! [`ShapeField`]. Triangle meshes and height fields have no interior there, so that points are
+//! only held back within the engine's prediction distance. A VPS shape inside of a compound is
+//! not looked at yet: give the body several colliders in its place.
+
+#![forbid(unsafe_code)]
+
+mod contacts;
+mod dispatcher;
+mod pair;
+mod shape;
+mod shape_field;
+
+use rapier3d::geometry::NarrowPhase;
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+
+pub use dispatcher::VpsDispatcher;
+pub use pair::Sampling;
+pub use shape::{Role, VpsShape};
+pub use shape_field::ShapeField;
+
+/// A narrow phase with the default [`VpsDispatcher`] before parry's own.
+pub fn narrow_phase() -> NarrowPhase {
+    NarrowPhase::with_query_dispatcher(VpsDispatcher::default().chain(DefaultQueryDispatcher))
+}

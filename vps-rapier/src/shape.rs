@@ -1,0 +1,185 @@
+use std::sync::Arc;
+
+use rapier3d::math::{Real, Vector};
+use rapier3d::parry::bounding_volume::{Aabb, BoundingSphere};
+use rapier3d::parry::mass_properties::MassProperties;
+use rapier3d::parry::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
+use rapier3d::parry::shape::{FeatureId, Shape, ShapeType, SharedShape, TypedShape};
+use vps_core::{Asset, DistanceField, Vec3};
+
+/// What a shape is in a pair of VPS shapes (Fig. 5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Rather the field.
+    Voxelmap,
+    /// The shell if it has fewer points than the other (section 3.2). A body smaller than the
+    /// spacing of those points slips between them: give a ground [`Role::Voxelmap`].
+    #[default]
+    Mixed,
+    /// Rather the shell.
+    Pointshell,
+}
+
+/// An [`Asset`] as a shape of parry: solid, in the frame of its mesh.
+///
+/// Cloning shares the asset.
+#[derive(Clone)]
+pub struct VpsShape {
+    asset: Arc<Asset<'static>>,
+    role: Role,
+}
+
+impl VpsShape {
+    /// A shape of an asset, shell or field as fits the pair.
+    pub fn new(asset: Arc<Asset<'static>>) -> Self {
+        Self {
+            asset,
+            role: Role::Mixed,
+        }
+    }
+
+    /// The same shape with a preference for what it is in a pair.
+    pub fn with_role(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
+
+    /// What the shape was made from.
+    pub fn asset(&self) -> &Asset<'static> {
+        &self.asset
+    }
+
+    /// What the shape prefers to be in a pair.
+    pub fn role(&self) -> Role {
+        self.role
+    }
+
+    /// The point of the surface the gradient of the field leads to, by Newton steps.
+    fn project(&self, point: Vec3) -> (Vec3, bool) {
+        let field = self.asset.voxelmap.trilinear();
+        let is_inside = field.signed_distance(point) < 0.0;
+        let mut on_surface = self.asset.voxelmap.grid().bounds().clamp(point);
+        for _ in 0..16 {
+            let step = field.signed_distance(on_surface);
+            if step.abs() < 1e-3 * self.asset.voxelmap.grid().voxel_size() {
+                break;
+            }
+            on_surface += field.inward_direction(on_surface) * step;
+        }
+        (on_surface, is_inside)
+    }
+}
+
+impl From<VpsShape> for SharedShape {
+    fn from(shape: VpsShape) -> Self {
+        SharedShape::new(shape)
+    }
+}
+
+impl Shape for VpsShape {
+    fn compute_local_aabb(&self) -> Aabb {
+        let solid = self.asset.voxelmap.solid();
+        Aabb::new(solid.min, solid.max)
+    }
+
+    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
+        let solid = self.asset.voxelmap.solid();
+        BoundingSphere::new(solid.center(), 0.5 * solid.extents().length())
+    }
+
+    fn clone_dyn(&self) -> Box<dyn Shape> {
+        Box::new(self.clone())
+    }
+
+    /// Assets are not scaled: build one of a scaled mesh.
+    fn scale_dyn(&self, _scale: Vector, _subdivisions: u32) -> Option<Box<dyn Shape>> {
+        None
+    }
+
+    fn mass_properties(&self, density: Real) -> MassProperties {
+        let mass = self.asset.mass;
+        let kilograms = density * mass.volume;
+        MassProperties::with_inertia_matrix(
+            mass.center(),
+            kilograms,
+            mass.inertia_tensor(kilograms),
+        )
+    }
+
+    fn shape_type(&self) -> ShapeType {
+        ShapeType::Custom
+    }
+
+    fn as_typed_shape(&self) -> TypedShape<'_> {
+        TypedShape::Custom(self)
+    }
+
+    fn ccd_thickness(&self) -> Real {
+        0.5 * self.asset.voxelmap.solid().extents().min_element()
+    }
+
+    fn ccd_angular_thickness(&self) -> Real {
+        std::f32::consts::FRAC_PI_4
+    }
+}
+
+impl PointQuery for VpsShape {
+    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
+        let (on_surface, is_inside) = self.project(point);
+        let nearest = if solid && is_inside {
+            point
+        } else {
+            on_surface
+        };
+        PointProjection::new(is_inside, nearest)
+    }
+
+    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
+        (self.project_local_point(point, false), FeatureId::Unknown)
+    }
+}
+
+impl RayCast for VpsShape {
+    /// Marches along the ray by what the field says is free (or, from inside and not solid,
+    /// filled).
+    fn cast_local_ray_and_get_normal(
+        &self,
+        ray: &Ray,
+        max_time_of_impact: Real,
+        solid: bool,
+    ) -> Option<RayIntersection> {
+        let field = self.asset.voxelmap.trilinear();
+        let speed = ray.dir.length();
+        let starts_inside = field.signed_distance(ray.origin) < 0.0;
+        let hit = |time| {
+            let normal = -field.inward_direction(ray.point_at(time));
+            Some(RayIntersection::new(time, normal, FeatureId::Unknown))
+        };
+        if starts_inside && solid {
+            return hit(0.0);
+        }
+        if speed == 0.0 {
+            return None;
+        }
+        let side = if starts_inside { -1.0 } else { 1.0 };
+        let close = 0.05 * self.asset.voxelmap.grid().voxel_size();
+        let (solid_box, mut time) = (self.asset.voxelmap.solid(), 0.0);
+        while time <= max_time_of_impact {
+            let point = ray.point_at(time);
+            // Outside of the box its distance is safe, and further than the field's may be.
+            let outside = solid_box.distance_outside(point);
+            let free = side * field.signed_distance(point);
+            if free <= close && outside <= close {
+                return hit(time);
+            }
+            time += (0.9 * free).max(outside).max(close) / speed;
+            let passed = solid_box.center() - point;
+            if outside > 0.0
+                && passed.dot(ray.dir) < 0.0
+                && passed.length() > solid_box.extents().length()
+            {
+                return None;
+            }
+        }
+        None
+    }
+}
