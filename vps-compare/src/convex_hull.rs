@@ -1,0 +1,34 @@
+use rapier3d::math::Vector;
+use rapier3d::parry::shape::SharedShape;
+use vps_build::Mesh;
+
+use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, parry_pair, single};
+
+/// One convex hull of the mesh's support points along 42 directions, those of an icosahedron
+/// divided once: the hull `btShapeHull` makes in the paper's comparison.
+#[derive(Clone, Copy, Debug)]
+pub struct ConvexHull;
+
+impl CollisionAlgorithm for ConvexHull {
+    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
+        let points = support_points(&single(scene.body.vertices()));
+        let flat = PrepareError::Flat("convex hull");
+        let body = SharedShape::convex_hull(&points).ok_or(flat)?;
+        let vertices = body
+            .as_convex_polyhedron()
+            .map_or(0, |hull| hull.points().len());
+        Ok(parry_pair(scene, body, vec![("vertices", vertices)]))
+    }
+}
+
+/// The points furthest along 42 evenly spread directions, each once.
+pub(crate) fn support_points(points: &[Vector]) -> Vec<Vector> {
+    let directions = Mesh::icosphere(1.0, 1).expect("a ball of radius one");
+    let mut found: Vec<Vector> = Vec::new();
+    for direction in single(directions.vertices()) {
+        let along = |p: &&Vector| direction.dot(**p);
+        let furthest = points.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+        found.extend(furthest.filter(|p| !found.contains(p)));
+    }
+    found
+}

@@ -1,0 +1,157 @@
+//! Collision algorithms for meshes behind one interface.
+//!
+//! An algorithm [prepares](CollisionAlgorithm::prepare) a [`Scene`] of a body and a ground, which
+//! may take seconds, and gives a [`Prepared`] pair that answers queries. All of them speak through
+//! the query dispatcher of parry, so that the same pair can be put in a rapier world or be asked
+//! directly.
+//!
+//! | adapter | what it does to the mesh |
+//! |---|---|
+//! | [`Vps`] | pointshell against a voxelmap or an exact cuboid |
+//! | [`ConvexHull`] | a hull of few support points (GJK and EPA) |
+//! | [`ConvexDecomposition`] | VHACD parts with few vertices each |
+//! | [`Trimesh`] | nothing |
+//!
+//! [`oracle`] says how deep a body really is.
+
+#![forbid(unsafe_code)]
+
+mod convex_decomposition;
+mod convex_hull;
+mod few_vertices;
+pub mod oracle;
+mod trimesh;
+mod vps;
+
+use std::sync::Arc;
+
+use glamx::DVec3;
+use rapier3d::geometry::{ContactData, ContactManifold, ContactManifoldData};
+use rapier3d::math::{Pose, Vector};
+use rapier3d::parry::query::{
+    ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher, Unsupported,
+};
+use rapier3d::parry::shape::SharedShape;
+use vps_build::{BuildError, Mesh};
+
+pub use convex_decomposition::ConvexDecomposition;
+pub use convex_hull::ConvexHull;
+pub use trimesh::Trimesh;
+pub use vps::{Vps, VpsGround};
+
+/// Answers of parry in the form rapier keeps them.
+pub type Dispatcher = dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>;
+
+/// A body above a ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'m> {
+    /// What moves: a closed mesh in metres.
+    pub body: &'m Mesh,
+    /// Edge lengths in metres of the box it falls on, around the origin of the ground's frame.
+    pub ground_extents: [f64; 3],
+}
+
+/// A collision algorithm with its parameters.
+pub trait CollisionAlgorithm {
+    /// Makes from the scene whatever the algorithm needs.
+    ///
+    /// # Errors
+    /// When it cannot be made from this mesh.
+    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError>;
+}
+
+/// Why an algorithm cannot work on a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PrepareError {
+    /// Hull or parts have no volume.
+    #[error("the {0} of the mesh has no volume")]
+    Flat(&'static str),
+    /// The parts cannot be found.
+    #[error("convex decomposition gives no part with a volume")]
+    NoParts,
+    /// The asset cannot be built.
+    #[error("cannot build the asset: {0}")]
+    Build(#[from] BuildError),
+    /// parry refuses the triangles.
+    #[error("not a triangle mesh for parry: {0}")]
+    Trimesh(String),
+}
+
+/// What a scene became.
+#[derive(Clone)]
+pub struct Prepared {
+    /// The body's shape, in the frame of its mesh.
+    pub body: SharedShape,
+    /// The ground's shape.
+    pub ground: SharedShape,
+    /// Who answers queries about the two.
+    pub dispatcher: Arc<Dispatcher>,
+    /// What the body is made of now, such as a number of points, by name.
+    pub size: Vec<(&'static str, usize)>,
+}
+
+/// Contacts of a pair, kept from query to query as an engine does.
+#[derive(Default)]
+pub struct Contacts {
+    /// One manifold or several, the ground being the first shape.
+    pub manifolds: Vec<ContactManifold>,
+    workspace: Option<ContactManifoldsWorkspace>,
+}
+
+impl Contacts {
+    /// The number of points in all manifolds and the deepest penetration in metres, negative if
+    /// nothing touches yet; `None` without a point.
+    pub fn summary(&self) -> (usize, Option<f32>) {
+        summary(self.manifolds.iter())
+    }
+}
+
+/// The number of points in manifolds and their deepest penetration in metres.
+pub fn summary<'m>(manifolds: impl Iterator<Item = &'m ContactManifold>) -> (usize, Option<f32>) {
+    let points = manifolds.flat_map(|m| m.points.iter());
+    points.fold((0, None), |(count, deepest), point| {
+        let depth = -point.dist;
+        (
+            count + 1,
+            Some(deepest.map_or(depth, |d: f32| d.max(depth))),
+        )
+    })
+}
+
+impl Prepared {
+    /// Updates the contacts for a pose of the body in the ground's frame; contacts up to
+    /// `prediction` metres apart are given as well.
+    ///
+    /// # Errors
+    /// When the dispatcher cannot answer for this pair of shapes.
+    pub fn query(
+        &self,
+        body_in_ground: &Pose,
+        prediction: f32,
+        contacts: &mut Contacts,
+    ) -> Result<(), Unsupported> {
+        self.dispatcher.contact_manifolds(
+            body_in_ground,
+            &*self.ground,
+            &*self.body,
+            prediction,
+            &mut contacts.manifolds,
+            &mut contacts.workspace,
+        )
+    }
+}
+
+/// A pair of parry's own shapes.
+fn parry_pair(scene: &Scene<'_>, body: SharedShape, size: Vec<(&'static str, usize)>) -> Prepared {
+    let [x, y, z] = scene.ground_extents.map(|e| 0.5 * e as f32);
+    Prepared {
+        body,
+        ground: SharedShape::cuboid(x, y, z),
+        dispatcher: Arc::new(DefaultQueryDispatcher),
+        size,
+    }
+}
+
+fn single(vertices: &[DVec3]) -> Vec<Vector> {
+    vertices.iter().map(|v| v.as_vec3()).collect()
+}

@@ -1,0 +1,61 @@
+use std::sync::Arc;
+
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::parry::shape::SharedShape;
+use vps_build::{BuildError, BuildOptions, Mesh};
+use vps_core::Asset;
+use vps_rapier::{Role, Sampling, VpsDispatcher, VpsShape};
+
+use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene};
+
+/// Pointshell of the body against the ground.
+pub struct Vps<'s> {
+    /// How the body's asset is built.
+    pub body: BuildOptions,
+    /// What the ground is.
+    pub ground: VpsGround,
+    /// How a voxelmap is sampled.
+    pub sampling: Sampling,
+    /// Builds an asset, or fetches one that was built before.
+    pub assets: &'s dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'static>>, BuildError>,
+}
+
+/// The ground of [`Vps`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum VpsGround {
+    /// A voxelmap of the box, as in the paper.
+    Voxelmap(BuildOptions),
+    /// The box itself.
+    Cuboid,
+}
+
+impl CollisionAlgorithm for Vps<'_> {
+    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
+        let body = (self.assets)(scene.body, &self.body)?;
+        let size = vec![
+            ("points", body.tree.point_count()),
+            ("levels", body.tree.level_count() as usize),
+        ];
+        let ground = match &self.ground {
+            VpsGround::Voxelmap(options) => {
+                let flat = |_| PrepareError::Flat("ground");
+                let mesh = Mesh::cuboid(scene.ground_extents).map_err(flat)?;
+                let ground = VpsShape::new((self.assets)(&mesh, options)?);
+                ground.with_role(Role::Voxelmap).into()
+            }
+            VpsGround::Cuboid => {
+                let [x, y, z] = scene.ground_extents.map(|e| 0.5 * e as f32);
+                SharedShape::cuboid(x, y, z)
+            }
+        };
+        let dispatcher = VpsDispatcher {
+            sampling: self.sampling,
+        };
+        Ok(Prepared {
+            body: VpsShape::new(body).with_role(Role::Pointshell).into(),
+            ground,
+            dispatcher: Arc::new(dispatcher.chain(DefaultQueryDispatcher)),
+            size,
+        })
+    }
+}

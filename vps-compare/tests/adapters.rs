@@ -1,0 +1,67 @@
+//! Every adapter on one scene whose answers are known.
+
+use std::sync::Arc;
+
+use rapier3d::math::Pose;
+use vps_build::{BuildOptions, Mesh, Resolution, build};
+use vps_compare::{
+    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Scene, Trimesh, Vps, VpsGround,
+    oracle::PlaneOracle,
+};
+use vps_rapier::Sampling;
+
+#[test]
+fn all_find_a_ball_on_a_box() {
+    let ball = Mesh::icosphere(0.1, 3).unwrap();
+    let scene = Scene {
+        body: &ball,
+        ground_extents: [1.0, 0.2, 1.0],
+    };
+    let options = |points| BuildOptions {
+        resolution: Resolution::VoxelSize(0.01),
+        points,
+        ..BuildOptions::default()
+    };
+    let assets = |mesh: &Mesh, options: &BuildOptions| Ok(Arc::new(build(mesh, options, &|_| ())?));
+    let vps = |ground| Vps {
+        body: options(2000),
+        ground,
+        sampling: Sampling::Trilinear,
+        assets: &assets,
+    };
+    let decomposition = ConvexDecomposition {
+        parts: 4,
+        vertices: 100,
+        resolution: 32,
+    };
+    let algorithms: [(&dyn CollisionAlgorithm, f32); 5] = [
+        // What each may be off: its hull, its spacing or its voxels.
+        (&vps(VpsGround::Cuboid), 0.001),
+        (&vps(VpsGround::Voxelmap(options(10))), 0.001),
+        (&ConvexHull, 0.004),
+        (&decomposition, 0.003),
+        (&Trimesh, 1e-5),
+    ];
+    let oracle = PlaneOracle::new(&ball).unwrap();
+    for (i, (algorithm, tolerance)) in algorithms.into_iter().enumerate() {
+        let prepared = algorithm.prepare(&scene).unwrap();
+        assert!(prepared.size.iter().all(|(_, n)| *n > 0));
+        let mut contacts = Contacts::default();
+        for height in [0.5, 0.25, 0.205, 0.199, 0.19] {
+            let pose = Pose::translation(0.05, height, 0.0);
+            prepared.query(&pose, 0.01, &mut contacts).unwrap();
+            let (count, deepest) = contacts.summary();
+            let exact = oracle.penetration(&pose, 0.1);
+            if exact < -0.02 {
+                assert!(deepest.is_none_or(|d| d < 0.0), "algorithm {i} at {height}");
+            } else {
+                let deepest = deepest.unwrap();
+                assert!(count > 0);
+                assert!(
+                    (deepest - exact).abs() < tolerance,
+                    "algorithm {i}: {deepest}, exact {exact}"
+                );
+            }
+        }
+    }
+}
