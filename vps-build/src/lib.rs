@@ -43,5 +43,6 @@ mod triangle;
 
 pub use build::{BuildError, BuildOptions, Encoding, Resolution, Stage, build};
 pub use file::{FileError, read_asset, write_asset, write_atomically};
+pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
 pub use sample::Samples;

@@ -8,7 +8,7 @@ use crate::Mesh;
 /// Volume, centre and inertia at density one, exact for a closed mesh that faces outwards: sums
 /// over the tetrahedra between an inner point and each triangle. `None` if the volume is not
 /// positive.
-pub(crate) fn mass_properties(mesh: &Mesh) -> Option<MassProperties> {
+pub fn mass_properties(mesh: &Mesh) -> Option<MassProperties> {
     let (low, high) = mesh.bounds();
     let origin = low.midpoint(high);
     let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);

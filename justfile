@@ -1,0 +1,42 @@
+# What can be done here: `just --list`.
+
+set shell := ["bash", "-euo", "pipefail", "-c"]
+
+bench := "cargo run --locked --release --quiet -p vps-bench --"
+
+# Show this list
+default:
+    @just --list
+
+# Build the tools
+build:
+    cargo build --locked --release --workspace
+
+# Fetch the models
+fetch: build
+    {{ bench }} fetch
+
+# Run every experiment and write the reports
+reproduce-paper: fetch
+    {{ bench }} run bunny_drop
+    {{ bench }} report bunny_drop --splice README.md
+
+# A short run of the experiment, into target/smoke
+reproduce-smoke: fetch
+    {{ bench }} run bunny_drop --quick --out target/smoke
+
+# All tests
+test:
+    cargo test --locked --workspace
+    just no-std
+
+# The core without a standard library and without an allocator: fails to build if either is needed
+no-std:
+    cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
+
+# Formatting, lints and documentation, warnings being errors
+check:
+    cargo fmt --all --check
+    cargo clippy --locked --workspace --all-targets -- -D warnings
+    cargo clippy --locked -p vps-core --no-default-features --features libm -- -D warnings
+    RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps

@@ -1,0 +1,90 @@
+//! What a run was made on and with.
+
+use std::process::Command;
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::Experiment;
+use crate::timed::Stopwatch;
+
+#[derive(Debug, Deserialize, Serialize)]
+pub(crate) struct Environment {
+    /// Seconds since 1970.
+    pub(crate) unix_time_s: u64,
+    pub(crate) processor: String,
+    pub(crate) logical_cores: usize,
+    pub(crate) memory_mib: u64,
+    pub(crate) system: String,
+    pub(crate) kernel: String,
+    pub(crate) target: String,
+    pub(crate) rustc: String,
+    pub(crate) profile: String,
+    pub(crate) opt_level: String,
+    pub(crate) version: String,
+    pub(crate) rapier3d: String,
+    pub(crate) parry3d: String,
+    /// Of this project, with `+` if files were changed since; empty outside of a checkout.
+    pub(crate) revision: String,
+    /// What taking the time of a query costs by itself; contained in every time.
+    pub(crate) timer_overhead_ns: u64,
+    /// Switched off in the engine, so that every step asks.
+    pub(crate) contact_recycling: bool,
+    pub(crate) contact_clustering: bool,
+    pub(crate) sleeping: bool,
+    pub(crate) quick: bool,
+    pub(crate) model_sha256: String,
+    /// The experiment as it was run.
+    pub(crate) experiment: Experiment,
+}
+
+impl Environment {
+    pub(crate) fn of_now(experiment: &Experiment, quick: bool, model_sha256: String) -> Self {
+        let machine = sysinfo::System::new().map(|mut system| {
+            system.refresh_memory();
+            system.refresh_cpu_all();
+            let processor = system.cpus().first().map(|c| c.brand().trim().to_owned());
+            (processor, system.cpus().len(), system.total_memory() >> 20)
+        });
+        let (processor, logical_cores, memory_mib) = machine.unwrap_or_default();
+        let unknown = || "unknown".to_owned();
+        Self {
+            unix_time_s: std::time::SystemTime::now()
+                .duration_since(std::time::UNIX_EPOCH)
+                .map_or(0, |d| d.as_secs()),
+            processor: processor.unwrap_or_else(unknown),
+            logical_cores,
+            memory_mib,
+            system: sysinfo::System::long_os_version().unwrap_or_else(|_| unknown()),
+            kernel: sysinfo::System::kernel_version().unwrap_or_else(|_| unknown()),
+            target: env!("VPS_TARGET").into(),
+            rustc: env!("VPS_RUSTC").into(),
+            profile: env!("VPS_PROFILE").into(),
+            opt_level: env!("VPS_OPT_LEVEL").into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            rapier3d: env!("VPS_RAPIER3D").into(),
+            parry3d: env!("VPS_PARRY3D").into(),
+            revision: revision().unwrap_or_default(),
+            timer_overhead_ns: Stopwatch::overhead_ns(),
+            contact_recycling: false,
+            contact_clustering: false,
+            sleeping: false,
+            quick,
+            model_sha256,
+            experiment: experiment.clone(),
+        }
+    }
+}
+
+fn revision() -> Option<String> {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok()?;
+        output.status.success().then_some(output.stdout)
+    };
+    let mut revision = String::from_utf8(git(&["rev-parse", "HEAD"])?).ok()?.trim().to_owned();
+    // What a run writes itself is no change.
+    let changes = git(&["status", "--porcelain", "--", ".", ":!reports", ":!README.md"])?;
+    if !changes.is_empty() {
+        revision.push('+');
+    }
+    Some(revision)
+}

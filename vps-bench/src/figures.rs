@@ -1,0 +1,156 @@
+//! Figures as SVG and PNG, without a display and without fonts of the system.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Once;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::register_font;
+
+/// A curve.
+pub(crate) struct Curve {
+    pub(crate) label: String,
+    pub(crate) color: RGBColor,
+    /// Runs of points; between two runs nothing is drawn.
+    pub(crate) runs: Vec<Vec<(f64, f64)>>,
+}
+
+/// A value printed in the paper, as a dashed line.
+pub(crate) struct Mark {
+    pub(crate) color: RGBColor,
+    pub(crate) x: Range<f64>,
+    pub(crate) y: f64,
+}
+
+/// Curves over a linear x and a logarithmic y axis.
+pub(crate) struct Figure {
+    pub(crate) title: String,
+    pub(crate) x_label: String,
+    pub(crate) y_label: String,
+    pub(crate) x: Range<f64>,
+    pub(crate) y: Range<f64>,
+    pub(crate) curves: Vec<Curve>,
+    pub(crate) marks: Vec<Mark>,
+    /// What the dashed lines are, for the legend.
+    pub(crate) marks_label: String,
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {what}", path.display())]
+pub(crate) struct FigureError {
+    path: PathBuf,
+    what: String,
+}
+
+/// Of Okabe and Ito: told apart also by those who see fewer colours.
+const COLORS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(90, 90, 90),
+];
+
+/// The colour of the n-th algorithm, the same in all figures.
+pub(crate) fn color(n: usize) -> RGBColor {
+    COLORS[n % COLORS.len()]
+}
+
+const SIZE: (u32, u32) = (1100, 600);
+const FONT: &str = "sans-serif";
+
+impl Figure {
+    /// Writes `stem.svg` and `stem.png`.
+    pub(crate) fn write(&self, folder: &Path, stem: &str) -> Result<(), FigureError> {
+        static FONT_REGISTERED: Once = Once::new();
+        FONT_REGISTERED.call_once(|| {
+            let font = epaint_default_fonts::UBUNTU_LIGHT;
+            // The font is a constant of its crate, known to be one.
+            let _ = register_font(FONT, FontStyle::Normal, font);
+        });
+        for extension in ["svg", "png"] {
+            let path = folder.join(format!("{stem}.{extension}"));
+            // Complete before it gets its name, so that no half figure is ever seen.
+            let temporary = folder.join(format!("{stem}.tmp.{extension}"));
+            let drawn = if extension == "svg" {
+                self.draw(&SVGBackend::new(&temporary, SIZE).into_drawing_area())
+            } else {
+                self.draw(&BitMapBackend::new(&temporary, SIZE).into_drawing_area())
+            };
+            let renamed = drawn.and_then(|()| {
+                std::fs::rename(&temporary, &path).map_err(|e| e.to_string())
+            });
+            renamed.map_err(|what| FigureError { path, what })?;
+        }
+        Ok(())
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Result<(), String> {
+        let error = |e: DrawingAreaErrorKind<B::ErrorType>| e.to_string();
+        area.fill(&WHITE).map_err(error)?;
+        let mut chart = ChartBuilder::on(area)
+            .caption(&self.title, (FONT, 24))
+            .margin(12)
+            .x_label_area_size(48)
+            .y_label_area_size(84)
+            .build_cartesian_2d(self.x.clone(), self.y.clone().log_scale())
+            .map_err(error)?;
+        chart
+            .configure_mesh()
+            .x_desc(&self.x_label)
+            .y_desc(&self.y_label)
+            .axis_desc_style((FONT, 19))
+            .label_style((FONT, 17))
+            .x_label_formatter(&|x| format!("{x:.0}"))
+            .y_label_formatter(&|y| plain(*y))
+            .light_line_style(RGBColor(242, 242, 242))
+            .bold_line_style(RGBColor(222, 222, 222))
+            .draw()
+            .map_err(error)?;
+        for curve in &self.curves {
+            let color = curve.color;
+            for (i, run) in curve.runs.iter().enumerate() {
+                let line = LineSeries::new(run.iter().copied(), color.stroke_width(2));
+                let drawn = chart.draw_series(line).map_err(error)?;
+                if i == 0 {
+                    drawn.label(&curve.label).legend(move |(x, y)| {
+                        PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3))
+                    });
+                }
+            }
+        }
+        for (i, mark) in self.marks.iter().enumerate() {
+            let ends = [(mark.x.start, mark.y), (mark.x.end, mark.y)];
+            let line = DashedLineSeries::new(ends, 7, 5, mark.color.stroke_width(2));
+            let drawn = chart.draw_series(line).map_err(error)?;
+            if i == 0 {
+                drawn.label(&self.marks_label).legend(|(x, y)| {
+                    let dash = |from, to| {
+                        PathElement::new([(x + from, y), (x + to, y)], BLACK.stroke_width(2))
+                    };
+                    EmptyElement::at((0, 0)) + dash(0, 7) + dash(12, 19)
+                });
+            }
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperLeft)
+            .label_font((FONT, 17))
+            .legend_area_size(32)
+            .margin(8)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200))
+            .draw()
+            .map_err(error)?;
+        area.present().map_err(error)
+    }
+}
+
+/// A number without an exponent.
+fn plain(y: f64) -> String {
+    let digits = (-y.log10()).ceil().max(0.0) as usize;
+    format!("{y:.digits$}")
+}

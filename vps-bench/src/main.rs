@@ -1,0 +1,127 @@
+//! Runs experiments and writes their reports.
+
+#![forbid(unsafe_code)]
+
+mod assets;
+mod config;
+mod drop;
+mod environment;
+mod figures;
+mod models;
+mod records;
+mod report;
+mod run;
+mod summary;
+mod timed;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::assets::AssetCache;
+use crate::config::Experiment;
+use crate::models::Models;
+use crate::run::Records;
+
+/// Experiments on collision detection: runs them, writes records, tables and figures.
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Folder of the experiments and of models.toml
+    #[arg(long, global = true, default_value = "experiments")]
+    experiments: PathBuf,
+    /// Where models and assets are kept
+    #[arg(long, global = true, default_value = ".cache")]
+    cache: PathBuf,
+    /// Folder of the reports
+    #[arg(long, global = true, default_value = "reports")]
+    out: PathBuf,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Fetch the models, all of them or those named
+    Fetch { models: Vec<String> },
+    /// Run experiments and write their records and reports
+    Run {
+        /// Names of experiments: files in the folder of experiments without `.toml`
+        #[arg(required = true)]
+        names: Vec<String>,
+        /// Few start orientations, to see that all works
+        #[arg(long)]
+        quick: bool,
+        /// Another model: a name in models.toml or the path of an OBJ file
+        #[arg(long)]
+        model: Option<String>,
+        /// Metres a unit of that model is long
+        #[arg(long, requires = "model")]
+        scale: Option<f64>,
+    },
+    /// Write the reports again from the records
+    Report {
+        #[arg(required = true)]
+        names: Vec<String>,
+        /// A file to put the tables into, between `<!-- NAME -->` and `<!-- /NAME -->`
+        #[arg(long)]
+        splice: Option<PathBuf>,
+    },
+}
+
+fn main() -> ExitCode {
+    match execute(&Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("vps-bench: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn execute(cli: &Cli) -> Result<(), Box<dyn std::error::Error>> {
+    let models = || Models::read(&cli.experiments.join("models.toml"), &cli.cache.join("models"));
+    match &cli.command {
+        Command::Fetch { models: names } => {
+            let models = models()?;
+            let all: Vec<_> = models.names().map(String::from).collect();
+            for name in if names.is_empty() { &all } else { names } {
+                println!("{name}: {}", models.file(name)?.display());
+            }
+        }
+        Command::Run {
+            names,
+            quick,
+            model,
+            scale,
+        } => {
+            let (models, assets) = (models()?, AssetCache::new(cli.cache.join("assets")));
+            for name in names {
+                let path = cli.experiments.join(format!("{name}.toml"));
+                let mut experiment = Experiment::read(&path)?;
+                if let Some(model) = model {
+                    experiment.body.model.clone_from(model);
+                }
+                experiment.body.scale = scale.unwrap_or(experiment.body.scale);
+                let records = run::run(&experiment, *quick, &models, &assets)?;
+                let folder = cli.out.join(name);
+                records.write(&folder)?;
+                let table = report::report(&folder, &records)?;
+                println!("{}\n\n{table}", experiment.title);
+                println!("{}", folder.join("report.md").display());
+            }
+        }
+        Command::Report { names, splice } => {
+            for name in names {
+                let folder = cli.out.join(name);
+                let table = report::report(&folder, &Records::read(&folder)?)?;
+                if let Some(path) = splice {
+                    report::splice(path, name, &table)?;
+                }
+                println!("{}", folder.join("report.md").display());
+            }
+        }
+    }
+    Ok(())
+}
