@@ -25,9 +25,10 @@ reproduce-paper: fetch
 reproduce-smoke: fetch
     {{ bench }} run bunny_drop --quick --out target/smoke
 
-# All tests
+# All tests; those of the harness with the optimised build the experiments use
 test:
-    cargo test --locked --workspace
+    cargo test --locked --workspace --exclude vps-bench
+    cargo test --locked --release -p vps-bench
     just no-std
 
 # The core without a standard library and without an allocator: fails to build if either is needed

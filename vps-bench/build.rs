@@ -19,7 +19,10 @@ fn main() {
     let lock = std::fs::read_to_string(lock).unwrap_or_default();
     for name in ["rapier3d", "parry3d"] {
         let entry = format!("name = \"{name}\"\nversion = \"");
-        let version = lock.split(&entry).nth(1).and_then(|rest| rest.split('"').next());
+        let version = lock
+            .split(&entry)
+            .nth(1)
+            .and_then(|rest| rest.split('"').next());
         let version = version.unwrap_or("unknown");
         println!("cargo::rustc-env=VPS_{}={version}", name.to_uppercase());
     }

@@ -117,7 +117,7 @@ pub(crate) enum Method {
     Vps(Vps),
     ConvexHull,
     ConvexDecomposition {
-        parts: u32,
+        parts: usize,
         vertices: usize,
         resolution: u32,
     },
@@ -187,7 +187,12 @@ impl Experiment {
                 return Err(format!("{key} must not be negative, but is {value}"));
             }
         }
-        if !self.ground.extents_m.iter().all(|e| *e > 0.0 && e.is_finite()) {
+        if !self
+            .ground
+            .extents_m
+            .iter()
+            .all(|e| *e > 0.0 && e.is_finite())
+        {
             return Err("ground.extents_m must all be positive".into());
         }
         let [from, to] = self.runs.measured_steps;

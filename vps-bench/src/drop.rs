@@ -126,7 +126,11 @@ impl Drop<'_> {
 
     /// Uniformly distributed (Shoemake, 1992); the same for all algorithms.
     fn start_orientation(&self, orientation: u32) -> Quat {
-        let seed = self.experiment.runs.seed.wrapping_add(u64::from(orientation));
+        let seed = self
+            .experiment
+            .runs
+            .seed
+            .wrapping_add(u64::from(orientation));
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let [u, v, w]: [f32; 3] = rng.random();
         let (v, w) = (v * std::f32::consts::TAU, w * std::f32::consts::TAU);

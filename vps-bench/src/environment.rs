@@ -80,9 +80,19 @@ fn revision() -> Option<String> {
         let output = Command::new("git").args(arguments).output().ok()?;
         output.status.success().then_some(output.stdout)
     };
-    let mut revision = String::from_utf8(git(&["rev-parse", "HEAD"])?).ok()?.trim().to_owned();
+    let mut revision = String::from_utf8(git(&["rev-parse", "HEAD"])?)
+        .ok()?
+        .trim()
+        .to_owned();
     // What a run writes itself is no change.
-    let changes = git(&["status", "--porcelain", "--", ".", ":!reports", ":!README.md"])?;
+    let changes = git(&[
+        "status",
+        "--porcelain",
+        "--",
+        ".",
+        ":!reports",
+        ":!README.md",
+    ])?;
     if !changes.is_empty() {
         revision.push('+');
     }

@@ -80,9 +80,8 @@ impl Figure {
             } else {
                 self.draw(&BitMapBackend::new(&temporary, SIZE).into_drawing_area())
             };
-            let renamed = drawn.and_then(|()| {
-                std::fs::rename(&temporary, &path).map_err(|e| e.to_string())
-            });
+            let renamed =
+                drawn.and_then(|()| std::fs::rename(&temporary, &path).map_err(|e| e.to_string()));
             renamed.map_err(|what| FigureError { path, what })?;
         }
         Ok(())
@@ -149,8 +148,64 @@ impl Figure {
     }
 }
 
-/// A number without an exponent.
+/// A power of ten without an exponent, its digits in groups of three.
 fn plain(y: f64) -> String {
-    let digits = (-y.log10()).ceil().max(0.0) as usize;
-    format!("{y:.digits$}")
+    let decimals = (-y.log10()).ceil().max(0.0) as usize;
+    if decimals > 0 {
+        return format!("{y:.decimals$}");
+    }
+    let digits = format!("{y:.0}");
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_ten_are_written_out() {
+        let written = [0.01, 0.1, 1.0, 100.0, 1e3, 1e6].map(plain);
+        assert_eq!(written, ["0.01", "0.1", "1", "100", "1 000", "1 000 000"]);
+    }
+
+    /// Text is drawn with the font that comes along: nothing is taken from the system.
+    #[test]
+    fn figures_are_drawn_with_text() {
+        let folder = std::env::temp_dir().join(format!("vps-figure-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let figure = |title: &str| Figure {
+            title: title.into(),
+            x_label: "step".into(),
+            y_label: "time".into(),
+            x: 0.0..10.0,
+            y: 1.0..1000.0,
+            curves: vec![Curve {
+                label: "a".into(),
+                color: color(0),
+                runs: vec![vec![(1.0, 3.0), (9.0, 300.0)]],
+            }],
+            marks: vec![Mark {
+                color: color(0),
+                x: 2.0..8.0,
+                y: 50.0,
+            }],
+            marks_label: "b".into(),
+        };
+        figure("A title").write(&folder, "one").unwrap();
+        figure("Another").write(&folder, "two").unwrap();
+        let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+        let svg = String::from_utf8(read("one.svg")).unwrap();
+        assert!(svg.contains("A title") && svg.contains("polyline"));
+        assert!(read("one.png").starts_with(b"\x89PNG"));
+        assert!(read("one.png") != read("two.png"));
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 4);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }

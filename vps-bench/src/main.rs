@@ -16,8 +16,10 @@ mod timed;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use indicatif::ProgressBar;
 
 use crate::assets::AssetCache;
 use crate::config::Experiment;
@@ -81,13 +83,22 @@ fn main() -> ExitCode {
 }
 
 fn execute(cli: &Cli) -> Result<(), Box<dyn std::error::Error>> {
-    let models = || Models::read(&cli.experiments.join("models.toml"), &cli.cache.join("models"));
+    let models = || {
+        Models::read(
+            &cli.experiments.join("models.toml"),
+            &cli.cache.join("models"),
+        )
+    };
     match &cli.command {
         Command::Fetch { models: names } => {
             let models = models()?;
             let all: Vec<_> = models.names().map(String::from).collect();
             for name in if names.is_empty() { &all } else { names } {
-                println!("{name}: {}", models.file(name)?.display());
+                let progress = ProgressBar::new_spinner().with_message(format!("fetching {name}"));
+                progress.enable_steady_tick(Duration::from_millis(200));
+                let file = models.file(name)?;
+                progress.finish_and_clear();
+                println!("{name}: {}", file.display());
             }
         }
         Command::Run {

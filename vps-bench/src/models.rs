@@ -154,7 +154,10 @@ impl Models {
 
 /// SHA-256 in hexadecimal digits.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+    Sha256::digest(bytes)
+        .iter()
+        .map(|b| format!("{b:02x}"))
+        .collect()
 }
 
 impl Source {
@@ -233,7 +236,10 @@ fn run(program: &str, arguments: &[String], folder: &Path) -> Result<(), String>
         return Ok(());
     }
     let errors = String::from_utf8_lossy(&output.stderr);
-    let last = errors.lines().rfind(|l| l.starts_with("E:")).unwrap_or("failed");
+    let last = errors
+        .lines()
+        .rfind(|l| l.starts_with("E:"))
+        .unwrap_or("failed");
     Err(format!("{program}: {last}"))
 }
 

@@ -52,8 +52,10 @@ pub(crate) struct PreparationRow {
     pub(crate) algorithm: String,
     /// `ok`, or why the algorithm cannot be used.
     pub(crate) status: String,
-    /// Reading and building, without what was built in an earlier run.
+    /// All of it, with reading what an earlier run built.
     pub(crate) prepare_s: f64,
+    /// Building of assets, unless an earlier run did.
+    pub(crate) asset_build_s: Option<f64>,
     /// Such as `799 points, 5 levels`.
     pub(crate) size: String,
     /// What its assets are known by, body and ground.

@@ -71,7 +71,12 @@ fn prose(records: &Records, table: &str) -> String {
     let environment = &records.environment;
     let experiment = &environment.experiment;
     let [from, to] = experiment.runs.measured_steps;
-    let orientations = records.jobs.iter().map(|j| j.orientation + 1).max().unwrap_or(0);
+    let orientations = records
+        .jobs
+        .iter()
+        .map(|j| j.orientation + 1)
+        .max()
+        .unwrap_or(0);
     let mut text = format!(
         "# {}\n\nAfter the paper's {}.\n\n{}\n",
         experiment.title,
@@ -84,27 +89,38 @@ fn prose(records: &Records, table: &str) -> String {
          ![Time of the collision query by step](query_time.png)\n\n\
          ![Linear velocity by step](linear_velocity.png)\n\n\
          ## What the algorithms made of the mesh\n\n\
-         | algorithm | size | preparation, s | asset files, MiB | status |\n|---|---|---|---|---|\n",
+         | algorithm | size | preparation, s | of it building assets, s | asset files, MiB | \
+         status |\n|---|---|---|---|---|---|\n",
     );
     for row in &records.preparations {
         let mib = row.asset_bytes as f64 / f64::from(1 << 20);
         let _ = writeln!(
             text,
-            "| {} | {} | {:.2} | {} | {} |",
+            "| {} | {} | {:.2} | {} | {} | {} |",
             row.algorithm,
             row.size,
             row.prepare_s,
-            if row.asset_bytes == 0 { "–".into() } else { format!("{mib:.1}") },
+            row.asset_build_s
+                .map_or_else(|| "–".into(), |s| format!("{s:.2}")),
+            if row.asset_bytes == 0 {
+                "–".into()
+            } else {
+                format!("{mib:.1}")
+            },
             row.status,
         );
     }
-    text.push_str("\nA preparation that found its assets built by an earlier run is short.\n");
+    text.push_str("\nAssets built by an earlier run were only read.\n");
     let failed: Vec<_> = records.jobs.iter().filter(|j| j.status != "ok").collect();
     if !failed.is_empty() {
         text.push_str("\n## Simulations that failed\n\n");
     }
     for job in failed {
-        let _ = writeln!(text, "* {}, orientation {}: {}", job.algorithm, job.orientation, job.status);
+        let _ = writeln!(
+            text,
+            "* {}, orientation {}: {}",
+            job.algorithm, job.orientation, job.status
+        );
     }
     text.push_str("\n## The paper's values\n\n");
     for value in &experiment.paper_value {
@@ -131,7 +147,11 @@ fn prose(records: &Records, table: &str) -> String {
         environment.profile,
         environment.rapier3d,
         environment.parry3d,
-        if environment.revision.is_empty() { "unknown" } else { &environment.revision },
+        if environment.revision.is_empty() {
+            "unknown"
+        } else {
+            &environment.revision
+        },
         environment.timer_overhead_ns,
     );
     text
@@ -146,13 +166,12 @@ fn draw(folder: &Path, records: &Records) -> Result<(), Error> {
     }
     let steps = f64::from(experiment.world.steps);
     let curves = |value: fn(&StepMedian) -> Option<f64>| {
-        let curve = |(algorithm, color, course): &(&crate::config::Algorithm, _, Vec<StepMedian>)| {
-            Curve {
+        let curve =
+            |(algorithm, color, course): &(&crate::config::Algorithm, _, Vec<StepMedian>)| Curve {
                 label: algorithm.label.clone(),
                 color: *color,
                 runs: runs(course, value),
-            }
-        };
+            };
         courses.iter().map(curve).collect::<Vec<_>>()
     };
     let [from, to] = experiment.runs.measured_steps.map(f64::from);
@@ -202,7 +221,9 @@ fn runs(course: &[StepMedian], value: fn(&StepMedian) -> Option<f64>) -> Vec<Vec
     course
         .chunk_by(|a, b| value(a).is_some() == value(b).is_some())
         .map(|run| {
-            let points = run.iter().filter_map(|m| Some((f64::from(m.step), value(m)?)));
+            let points = run
+                .iter()
+                .filter_map(|m| Some((f64::from(m.step), value(m)?)));
             points.collect::<Vec<_>>()
         })
         .filter(|run| !run.is_empty())
@@ -215,10 +236,15 @@ fn decades(
     others: impl Iterator<Item = f64>,
     least: f64,
 ) -> std::ops::Range<f64> {
-    let on_curves = curves.iter().flat_map(|c| c.runs.iter().flatten()).map(|p| p.1);
+    let on_curves = curves
+        .iter()
+        .flat_map(|c| c.runs.iter().flatten())
+        .map(|p| p.1);
     let (low, high) = on_curves
         .chain(others)
-        .fold((f64::INFINITY, least), |(low, high), y| (y.min(low), y.max(high)));
+        .fold((f64::INFINITY, least), |(low, high), y| {
+            (y.min(low), y.max(high))
+        });
     let low = low.min(high).max(least);
     10_f64.powf(low.log10().floor())..10_f64.powf(high.log10().ceil())
 }
@@ -243,7 +269,12 @@ mod tests {
 
     #[test]
     fn numbers_keep_three_digits() {
-        let cases = [(97_270.4, "97270"), (710.0, "710"), (2.094, "2.09"), (0.12345, "0.123")];
+        let cases = [
+            (97_270.4, "97270"),
+            (710.0, "710"),
+            (2.094, "2.09"),
+            (0.12345, "0.123"),
+        ];
         for (value, expected) in cases {
             assert_eq!(short(value), expected);
         }
@@ -257,7 +288,13 @@ mod tests {
             query_us,
             linear_velocity_m_s: 1.0,
         };
-        let course = [at(0, None), at(1, Some(2.0)), at(2, Some(3.0)), at(3, None), at(4, Some(1.0))];
+        let course = [
+            at(0, None),
+            at(1, Some(2.0)),
+            at(2, Some(3.0)),
+            at(3, None),
+            at(4, Some(1.0)),
+        ];
         let expected = [vec![(1.0, 2.0), (2.0, 3.0)], vec![(4.0, 1.0)]];
         assert_eq!(runs(&course, |m| m.query_us), expected);
     }

@@ -8,11 +8,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use vps_build::{BuildError, BuildOptions, Mesh, Resolution, mass_properties, obj};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
-    CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh, Vps, VpsGround,
+    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
+    Vps, VpsGround,
 };
 use vps_rapier::Sampling;
 
-use crate::assets::{AssetCache, AssetError, Kept};
+use crate::assets::{AssetCache, Kept};
 use crate::config::{self, Experiment, Method, SamplingName};
 use crate::drop::Drop;
 use crate::environment::Environment;
@@ -111,18 +112,11 @@ fn prepare(
         ground_extents: experiment.ground.extents_m,
     };
     let used: RefCell<Vec<Kept>> = RefCell::default();
-    // The cache has more ways to fail than the builder; they end up in the row as they are.
-    let failed: RefCell<Option<AssetError>> = RefCell::default();
-    let get = |mesh: &Mesh, options: &BuildOptions| match assets.get(mesh, options) {
-        Ok(kept) => {
-            let asset = kept.asset.clone();
-            used.borrow_mut().push(kept);
-            Ok(asset)
-        }
-        Err(error) => {
-            *failed.borrow_mut() = Some(error);
-            Err(BuildError::NotSolid)
-        }
+    let get = |mesh: &Mesh, options: &BuildOptions| {
+        let kept = assets.get(mesh, options).map_err(|e| e.to_string())?;
+        let asset = kept.asset.clone();
+        used.borrow_mut().push(kept);
+        Ok(asset)
     };
     let start = Instant::now();
     let result = match &algorithm.method {
@@ -141,10 +135,9 @@ fn prepare(
         Method::Trimesh => Trimesh.prepare(&scene),
     };
     let prepare_s = start.elapsed().as_secs_f64();
-    let status = match (&result, failed.take()) {
-        (Ok(_), _) => "ok".into(),
-        (Err(_), Some(error)) => error.to_string(),
-        (Err(error), None) => error.to_string(),
+    let status = match &result {
+        Ok(_) => "ok".into(),
+        Err(error) => error.to_string(),
     };
     let prepared = result.ok();
     let size = prepared.iter().flat_map(|p| &p.size);
@@ -153,6 +146,10 @@ fn prepare(
         algorithm: algorithm.name.clone(),
         status,
         prepare_s,
+        asset_build_s: used
+            .iter()
+            .filter_map(|kept| kept.build_s)
+            .reduce(|a, b| a + b),
         size: joined(size.map(|(what, n)| format!("{n} {what}"))),
         assets: joined(used.iter().map(|kept| kept.key.clone())),
         asset_bytes: used.iter().map(|kept| kept.file_bytes).sum(),
@@ -164,13 +161,7 @@ fn joined(parts: impl Iterator<Item = String>) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-fn vps<'a>(
-    settings: &config::Vps,
-    assets: &'a dyn Fn(
-        &Mesh,
-        &BuildOptions,
-    ) -> Result<std::sync::Arc<vps_core::Asset<'static>>, BuildError>,
-) -> Vps<'a> {
+fn vps<'a>(settings: &config::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
     let ground = match settings.ground_voxel_size_m {
         Some(size) => VpsGround::Voxelmap(BuildOptions {
             resolution: Resolution::VoxelSize(size),

@@ -45,7 +45,7 @@ fn frame(rows: &[StepRow]) -> PolarsResult<DataFrame> {
     df!(
         "algorithm" => names,
         "step" => steps,
-        "query_us" => numbers(|r| (r.queries > 0).then(|| r.query_ns as f64 * 1e-3)),
+        "query_us" => numbers(|r| (r.queries > 0).then_some(r.query_ns as f64 * 1e-3)),
         "contacts" => numbers(|r| Some(r.contacts as f64)),
         "penetration_mm" => numbers(|r| r.penetration_m.map(|p| f64::from(p) * 1e3)),
         "true_penetration_mm" => numbers(|r| Some(f64::from(r.true_penetration_m) * 1e3)),
@@ -67,7 +67,10 @@ pub(crate) fn summarize(
         .filter(col("step").gt_eq(lit(from)).and(col("step").lt(lit(to))))
         .group_by([col("algorithm")])
         .agg([
-            col("query_us").count().cast(DataType::Float64).alias("queries"),
+            col("query_us")
+                .count()
+                .cast(DataType::Float64)
+                .alias("queries"),
             col("query_us").min().alias("min"),
             col("query_us").median().alias("median"),
             col("query_us").mean().alias("mean"),

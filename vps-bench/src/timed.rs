@@ -80,7 +80,9 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Timed {
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let start = Instant::now();
-        let result = self.inner.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+        let result = self
+            .inner
+            .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         let ns = start.elapsed().as_nanos() as u64;
         self.stopwatch.ns.fetch_add(ns, Ordering::Relaxed);
         self.stopwatch.queries.fetch_add(1, Ordering::Relaxed);

@@ -183,7 +183,7 @@ fn grid(mesh: &Mesh, options: &BuildOptions) -> Result<Grid, BuildError> {
     let dims = (extents / size - 1e-6).ceil().max(glamx::DVec3::ONE) + margins;
     let voxels = dims.element_product();
     let needed = voxels * BYTES_PER_VOXEL as f64;
-    if !(needed <= options.memory_limit as f64) || dims.max_element() >= f64::from(u16::MAX) {
+    if needed > options.memory_limit as f64 || dims.max_element() >= f64::from(u16::MAX) {
         return Err(BuildError::Memory {
             dims: dims.to_array().map(|n| n as u64),
             needed_mib: (needed / f64::from(1 << 20)).ceil() as u64,

@@ -32,12 +32,12 @@ use rapier3d::parry::query::{
     ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher, Unsupported,
 };
 use rapier3d::parry::shape::SharedShape;
-use vps_build::{BuildError, Mesh};
+use vps_build::Mesh;
 
 pub use convex_decomposition::ConvexDecomposition;
 pub use convex_hull::ConvexHull;
 pub use trimesh::Trimesh;
-pub use vps::{Vps, VpsGround};
+pub use vps::{AssetSource, Vps, VpsGround};
 
 /// Answers of parry in the form rapier keeps them.
 pub type Dispatcher = dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>;
@@ -71,7 +71,7 @@ pub enum PrepareError {
     NoParts,
     /// The asset cannot be built.
     #[error("cannot build the asset: {0}")]
-    Build(#[from] BuildError),
+    Asset(String),
     /// parry refuses the triangles.
     #[error("not a triangle mesh for parry: {0}")]
     Trimesh(String),

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::SharedShape;
-use vps_build::{BuildError, BuildOptions, Mesh};
+use vps_build::{BuildOptions, Mesh};
 use vps_core::Asset;
 use vps_rapier::{Role, Sampling, VpsDispatcher, VpsShape};
 
@@ -16,9 +16,12 @@ pub struct Vps<'s> {
     pub ground: VpsGround,
     /// How a voxelmap is sampled.
     pub sampling: Sampling,
-    /// Builds an asset, or fetches one that was built before.
-    pub assets: &'s dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'static>>, BuildError>,
+    /// Where assets come from.
+    pub assets: &'s AssetSource<'s>,
 }
+
+/// Builds an asset, or fetches one that was built before; an error is one line of text.
+pub type AssetSource<'s> = dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'static>>, String> + 's;
 
 /// The ground of [`Vps`].
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +34,9 @@ pub enum VpsGround {
 
 impl CollisionAlgorithm for Vps<'_> {
     fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
-        let body = (self.assets)(scene.body, &self.body)?;
+        let asset =
+            |mesh: &Mesh, options| (self.assets)(mesh, options).map_err(PrepareError::Asset);
+        let body = asset(scene.body, &self.body)?;
         let size = vec![
             ("points", body.tree.point_count()),
             ("levels", body.tree.level_count() as usize),
@@ -40,7 +45,7 @@ impl CollisionAlgorithm for Vps<'_> {
             VpsGround::Voxelmap(options) => {
                 let flat = |_| PrepareError::Flat("ground");
                 let mesh = Mesh::cuboid(scene.ground_extents).map_err(flat)?;
-                let ground = VpsShape::new((self.assets)(&mesh, options)?);
+                let ground = VpsShape::new(asset(&mesh, options)?);
                 ground.with_role(Role::Voxelmap).into()
             }
             VpsGround::Cuboid => {

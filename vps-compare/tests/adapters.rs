@@ -22,7 +22,10 @@ fn all_find_a_ball_on_a_box() {
         points,
         ..BuildOptions::default()
     };
-    let assets = |mesh: &Mesh, options: &BuildOptions| Ok(Arc::new(build(mesh, options, &|_| ())?));
+    let assets = |mesh: &Mesh, options: &BuildOptions| {
+        let asset = build(mesh, options, &|_| ()).map_err(|e| e.to_string())?;
+        Ok(Arc::new(asset))
+    };
     let vps = |ground| Vps {
         body: options(2000),
         ground,

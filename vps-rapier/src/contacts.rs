@@ -88,7 +88,7 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     pair.query(pos12)
         .with_margin(prediction)
         .for_each_contact(|contact| scratch.contacts.push(contact));
-    let mut old: Vec<_> = manifolds.drain(..).collect();
+    let mut old = std::mem::take(manifolds);
     let shell_to_field = pair.shell_to_field(pos12);
     let by_depth = |a: &&Contact, b: &&Contact| a.penetration.total_cmp(&b.penetration);
     let Some(deepest) = scratch.contacts.iter().max_by(by_depth) else {

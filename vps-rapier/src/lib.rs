@@ -3,15 +3,15 @@
 //! 2014, where the engine was Bullet).
 //!
 //! Two things are needed: a [`VpsShape`] for a collider, and the [`VpsDispatcher`] in the world's
-//! narrow phase, chained to parry's own so that all other pairs collide as before.
+//! narrow phase, chained to parry's own so that all other pairs collide as before:
 //!
 //! ```
-//! use std::sync::Arc;
-//! use rapier3d::prelude::*;
-//! use vps_build::{BuildOptions, Mesh, build};
+//! # use std::sync::Arc;
+//! # use rapier3d::prelude::*;
+//! # use vps_build::{BuildOptions, Mesh, build};
 //! use vps_rapier::{VpsShape, narrow_phase};
 //!
-//! let mesh = Mesh::icosphere(0.5, 3)?;
+//! # let mesh = Mesh::icosphere(0.5, 3)?;
 //! let asset = Arc::new(build(&mesh, &BuildOptions::default(), &|_| ())?);
 //! let mut world = PhysicsWorld { narrow_phase: narrow_phase(), ..PhysicsWorld::default() };
 //! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::cuboid(5.0, 0.1, 5.0));
@@ -32,6 +32,10 @@
 //! not looked at yet: give the body several colliders in its place.
 
 #![forbid(unsafe_code)]
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod contacts;
 mod dispatcher;

@@ -62,7 +62,6 @@ pub(crate) fn pose(size: f32) -> impl Strategy<Value = Pose3> {
 
 /// Penetration of a point in a mesh by looking at every triangle; its sign is that of the
 /// generalised winding number.
-
 pub(crate) fn exact_penetration(mesh: &Mesh, p: DVec3) -> f64 {
     let (mut closest, mut solid_angle) = (f64::INFINITY, 0.0);
     for corners in mesh.triangles() {
