@@ -318,3 +318,20 @@ fn broken_poses_give_no_contact() {
         }
     }
 }
+
+/// Over a flat face both samplings give the exact depth, eq. 4 for a shell that faces it.
+#[test]
+fn flat_faces_are_sampled_exactly() {
+    let mesh = Mesh::cuboid([1.0, 0.6, 0.8]).unwrap();
+    let asset = asset(&mesh, 10, Encoding::Distances(None));
+    let (local, trilinear) = (asset.voxelmap.local(), asset.voxelmap.trilinear());
+    let near = asset.voxelmap.accuracy().near_m;
+    for i in 0..200 {
+        let depth = 0.001 * (i - 100) as f32;
+        let p = Vec3::new(0.0013 * i as f32 - 0.1, 0.3 - depth, 0.05);
+        // The body above is pushed up.
+        assert!((local.penetration(p, Vec3::Y) - depth).abs() < 2.0 * near);
+        assert!((trilinear.penetration(p, Vec3::Y) - depth).abs() < 2.0 * near);
+        assert!(local.inward_direction(p).distance(-Vec3::Y) < 0.02);
+    }
+}
