@@ -13,8 +13,12 @@ use crate::triangle::closest_point;
 /// How many voxels of the sampling grid two points are apart: √2, as the paper suggests.
 const ALPHA: f64 = std::f64::consts::SQRT_2;
 
-/// How far a point count may be from the one asked for, as a fraction.
-const COUNT_TOLERANCE: f64 = 0.005;
+/// How far a point count may be from the one asked for, as a fraction, before another spacing is
+/// tried.
+const COUNT_TOLERANCE: f64 = 0.001;
+
+/// How many spacings are tried.
+const MOST_ROUNDS: u32 = 12;
 
 /// Points on a surface, in no order.
 #[derive(Clone, Debug)]
@@ -41,18 +45,28 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
     let target = f64::from(count);
     // Points spread like this cover about 0.7 of their spacing squared each.
     let mut spacing = (mesh.area() / (0.7 * target)).sqrt();
+    // Spacings that gave too many points and too few; the truth lies between.
+    let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
     let mut best: Option<(f64, f64, Vec<DVec3>)> = None;
-    for _ in 0..16 {
+    for _ in 0..MOST_ROUNDS {
         let positions = spread(mesh, spacing);
         let found = positions.len() as f64;
-        let off = (found / target - 1.0).abs();
+        let off = (found - target).abs();
         if best.as_ref().is_none_or(|(least, ..)| off < *least) {
             best = Some((off, spacing, positions));
         }
-        if off <= COUNT_TOLERANCE {
+        if off <= COUNT_TOLERANCE * target {
             break;
         }
+        if found > target {
+            too_small = spacing;
+        } else {
+            too_large = spacing;
+        }
         spacing *= (found / target).sqrt();
+        if !(too_small < spacing && spacing < too_large) {
+            spacing = f64::midpoint(too_small, too_large);
+        }
     }
     let (_, spacing, positions) = best.expect("at least one round");
     let normals = inward_normals(mesh, &positions, map);
