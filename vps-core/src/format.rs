@@ -70,7 +70,7 @@ pub enum FormatError {
     #[error("not a .vps file")]
     Foreign,
     /// A file of another version of this library.
-    #[error("a .vps file of version {0}, but this library reads version 1: build it again")]
+    #[error("a .vps file of version {0}, but this library reads {VPS_VERSION}: build it again")]
     Version(u32),
     /// The file ends before its data, or goes on behind it.
     #[error("the file has {found} bytes, but its header speaks of {expected}")]

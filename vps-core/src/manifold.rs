@@ -2,6 +2,9 @@ use glamx::Vec3;
 
 use crate::Contact;
 
+/// At which fraction of the margin outside of the solid a contact counts half.
+const CLOSE: f32 = 0.01;
+
 /// At most `N` contacts that stand for a contact set: the deepest one first, then those that
 /// spread the manifold over the largest area (section 3.2).
 #[derive(Clone, Copy, Debug)]
@@ -15,9 +18,10 @@ impl<const N: usize> ContactManifold<N> {
     /// of the picked points seen `along` a direction in the shell frame, such as the normal of the
     /// field at the deepest point.
     ///
-    /// What a point adds to the area counts less the further outside of the solid it is, down to
-    /// nothing at the margin: a point that touches comes before one just above it. Of equally good
-    /// contacts the first is taken. Costs `N` passes.
+    /// What a point adds to the area counts less the further outside of the solid it is, half at a
+    /// hundredth of the margin: the points a body stands on come before those that lie further
+    /// apart above the ground, without which it would sink and rise and never rest. Of equally
+    /// good contacts the first is taken. Costs `N` passes.
     pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
         let nothing = Contact {
             point: 0,
@@ -32,6 +36,7 @@ impl<const N: usize> ContactManifold<N> {
         let Some(&deepest) = best(contacts, |c| Some(c.penetration)) else {
             return manifold;
         };
+        let close = (margin * CLOSE).max(f32::MIN_POSITIVE);
         // Corners of the polygon in order, which is not the order of picking.
         let mut ring = [Vec3::ZERO; N];
         if N > 0 {
@@ -43,11 +48,8 @@ impl<const N: usize> ContactManifold<N> {
             let gain = |c: &Contact| {
                 let (_, area) = best_edge(corners, c.position, along);
                 let outside = (-c.penetration).max(0.0);
-                let weight = if outside > 0.0 {
-                    1.0 - outside / margin
-                } else {
-                    1.0
-                };
+                let far = outside / close;
+                let weight = 1.0 / (1.0 + far * far);
                 (area * weight > 0.0).then_some(area * weight)
             };
             let Some(&next) = best(contacts, gain) else {

@@ -45,14 +45,20 @@ pub struct Query<'q, F: ?Sized> {
 impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     /// A query for contacts; `shell_to_field` takes shell coordinates to field coordinates.
     pub fn new(tree: &'q PointSphereTree<'q>, field: &'q F, shell_to_field: Pose3) -> Self {
+        // A NaN is in contact with nothing, an infinity might be.
+        let translation = if shell_to_field.is_finite() {
+            shell_to_field.translation
+        } else {
+            Vec3::NAN
+        };
         let bounds = tree.bounds();
         let size = bounds.min.abs().max(bounds.max.abs()).length();
-        let reach = size + shell_to_field.translation.length();
+        let reach = size + translation.length();
         Self {
             tree,
             field,
             rotation: Mat3::from_quat(shell_to_field.rotation),
-            translation: shell_to_field.translation,
+            translation,
             margin: 0.0,
             // A ball and the points in it are moved by rounding, each on its own.
             ball_slack: 16.0 * f32::EPSILON * reach,

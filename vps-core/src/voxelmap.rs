@@ -5,13 +5,19 @@ use crate::{Aabb, DistanceField, Grid, Storage};
 /// Half the diagonal of a voxel, in voxels.
 const HALF_DIAGONAL: f32 = 0.866_025_4;
 
-/// How far the values of a [`Voxelmap`] may be from the exact penetration of the voxel centres.
+/// How far the values of a [`Voxelmap`] may be from the exact penetration of the voxel centres in
+/// the solid the voxels describe: what cannot be reached from outside through voxels free of
+/// triangles. Closed cavities, and pockets behind an opening narrower than about two voxels, belong
+/// to that solid; on their walls the field jumps.
+///
+/// Queries by the tree find what a test of all points finds for margins up to `band_m` less two
+/// voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Largest error in metres where the value lies within `band_m` of zero.
     pub near_m: f32,
-    /// Largest error in metres anywhere else. There a value is never closer to zero than the
-    /// exact penetration, but for `near_m`.
+    /// Largest error in metres anywhere else. There distances are never closer to zero than the
+    /// exact penetration, but for `near_m`; layers may be.
     pub far_m: f32,
     /// Where near ends, in metres.
     pub band_m: f32,
@@ -200,6 +206,13 @@ impl<'a> Voxelmap<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct LocalPenetration<'m>(&'m Voxelmap<'m>);
 
+impl LocalPenetration<'_> {
+    /// Edge length s of a voxel in metres.
+    pub fn voxel_size(&self) -> f32 {
+        self.0.grid.voxel_size()
+    }
+}
+
 impl DistanceField for LocalPenetration<'_> {
     fn penetration(&self, point: Vec3, normal: Vec3) -> f32 {
         let map = self.0;
@@ -232,6 +245,13 @@ impl DistanceField for LocalPenetration<'_> {
 /// voxel, √3/2 s; over a flat part of the surface it is the map's alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Trilinear<'m>(&'m Voxelmap<'m>);
+
+impl Trilinear<'_> {
+    /// Edge length s of a voxel in metres.
+    pub fn voxel_size(&self) -> f32 {
+        self.0.grid.voxel_size()
+    }
+}
 
 impl DistanceField for Trilinear<'_> {
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
