@@ -38,7 +38,7 @@ pub struct BuildOptions {
     pub encoding: Encoding,
     /// Where the clustering starts.
     pub seed: u64,
-    /// The most memory the voxelmap may take while it is built, in bytes.
+    /// The most memory voxels and points may take while they are made, in bytes.
     pub memory_limit: u64,
 }
 
@@ -77,8 +77,8 @@ pub enum BuildError {
     Branching(u32),
     /// Too fine.
     #[error(
-        "{0} x {1} x {2} voxels need {needed_mib} MiB to build, the limit is {limit_mib} MiB: \
-         choose larger voxels, a smaller margin or a higher limit",
+        "{0} x {1} x {2} voxels and the points need {needed_mib} MiB to build, the limit is \
+         {limit_mib} MiB: choose larger voxels, a smaller margin, fewer points or a higher limit",
         dims[0], dims[1], dims[2]
     )]
     Memory {
@@ -103,7 +103,13 @@ pub enum BuildError {
         fitting: i32,
     },
     /// No solid.
-    #[error("the mesh encloses no volume: is it closed, and do its triangles face outwards?")]
+    #[error(
+        "the mesh is not closed: {0} edges have no triangle on their other side that faces the \
+         same way"
+    )]
+    Open(usize),
+    /// A solid inside out.
+    #[error("the mesh encloses no volume: do its triangles face outwards?")]
     NotSolid,
     /// The grid was refused.
     #[error(transparent)]
@@ -133,6 +139,9 @@ pub enum Stage {
 /// voxel along z and its value.
 const BYTES_PER_VOXEL: u64 = 1 + 4 + 2 + 2;
 
+/// Bytes a point takes until it is in its tree.
+const BYTES_PER_POINT: u64 = 512;
+
 /// Makes voxelmap, pointshell, tree and mass properties of a closed mesh; `on_stage` hears of
 /// every step. The same mesh and options give the same asset, whatever the number of threads.
 ///
@@ -150,7 +159,7 @@ pub fn build(
         return Err(BuildError::Branching(options.branching));
     }
     let grid = grid(mesh, options)?;
-    let mass = mass_properties(mesh).ok_or(BuildError::NotSolid)?;
+    let mass = mass_properties(mesh)?;
     on_stage(Stage::Voxels);
     let voxelmap = voxelmap(mesh, grid, options.encoding, on_stage)?;
     on_stage(Stage::Points);
@@ -181,8 +190,10 @@ fn grid(mesh: &Mesh, options: &BuildOptions) -> Result<Grid, BuildError> {
     // A side that is a whole number of voxels long stays so in spite of rounding.
     let margins = 2.0 * f64::from(options.margin);
     let dims = (extents / size - 1e-6).ceil().max(glamx::DVec3::ONE) + margins;
-    let voxels = dims.element_product();
-    let needed = voxels * BYTES_PER_VOXEL as f64;
+    let slices = dims.z.min(distance::slices_at_once() as f64);
+    let needed = dims.element_product() * BYTES_PER_VOXEL as f64
+        + dims.x * dims.y * slices * distance::BYTES_PER_VOXEL_AT_ONCE as f64
+        + f64::from(options.points) * BYTES_PER_POINT as f64;
     if needed > options.memory_limit as f64 || dims.max_element() >= f64::from(u16::MAX) {
         return Err(BuildError::Memory {
             dims: dims.to_array().map(|n| n as u64),

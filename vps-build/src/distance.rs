@@ -22,6 +22,14 @@ pub(crate) const FAR_ERROR: f64 = 1.733;
 /// Slices along z that one thread works on at a time.
 const SLAB: usize = 8;
 
+/// Bytes a voxel takes, beside its place and its distance, while its slab is worked on.
+pub(crate) const BYTES_PER_VOXEL_AT_ONCE: u64 = size_of::<(f64, u32)>() as u64;
+
+/// How many slices are worked on at a time by all threads.
+pub(crate) fn slices_at_once() -> usize {
+    SLAB * rayon::current_num_threads()
+}
+
 /// The penetration of every voxel centre in metres, positive inside.
 pub(crate) fn penetrations(mesh: &Mesh, grid: &Grid, places: &[Place]) -> Vec<f32> {
     let mut penetrations = vec![f32::INFINITY; grid.voxel_count()];

@@ -17,7 +17,7 @@ pub(crate) enum Place {
     Outside,
 }
 
-/// Labels every voxel; the outermost voxels of the grid must be free of triangles.
+/// Labels every voxel; the outermost ones must lie outside of the box of the mesh.
 ///
 /// Closed cavities are inside: nothing can reach them.
 pub(crate) fn places(mesh: &Mesh, grid: &Grid) -> Vec<Place> {
@@ -61,11 +61,19 @@ pub(crate) fn for_each_overlapped(
     }
 }
 
-/// Marks what can be reached from the lowest corner through faces of voxels that are not surface:
-/// run by run along x, so that the stack stays small (after Kaufman and Shimony, 1986).
+/// Marks what can be reached from the border of the grid through faces of voxels that are not
+/// surface: run by run along x, so that the stack stays small (after Kaufman and Shimony, 1986).
 fn fill_outside(grid: &Grid, places: &mut [Place]) {
     let [nx, ny, nz] = grid.dims().map(|n| n as usize);
-    let mut seeds = vec![(0, 0, 0)];
+    let mut seeds = Vec::new();
+    // A mesh that reaches a corner of its box may cut the border into parts.
+    for z in 0..nz {
+        for y in 0..ny {
+            let whole_row = z == 0 || z + 1 == nz || y == 0 || y + 1 == ny;
+            let step = if whole_row { 1 } else { nx.max(2) - 1 };
+            seeds.extend((0..nx).step_by(step).map(|x| (x, y, z)));
+        }
+    }
     while let Some((x, y, z)) = seeds.pop() {
         let row = (z * ny + y) * nx;
         if places[row + x] != Place::Inside {
@@ -148,6 +156,21 @@ mod tests {
     use vps_core::Vec3;
 
     use super::*;
+
+    /// The corner of the mesh marks the corner of the grid, where a fill might have started.
+    #[test]
+    fn a_mesh_in_the_corner_of_its_box_is_filled_right() {
+        let v = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|v| v * 8.0);
+        let mesh = Mesh::new(&v, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+        let grid = Grid::new(Vec3::splat(-1.0), 1.0, [10, 10, 10]).unwrap();
+        let places = places(&mesh, &grid);
+        let at = |x, y, z| places[grid.index([x, y, z])];
+        assert_eq!(at(0, 0, 0), Place::Surface);
+        assert_eq!(at(3, 2, 2), Place::Inside);
+        for outside in [(9, 9, 9), (0, 9, 9), (9, 0, 9), (9, 9, 0), (5, 6, 7)] {
+            assert_eq!(at(outside.0, outside.1, outside.2), Place::Outside);
+        }
+    }
 
     #[test]
     fn a_box_is_filled_and_layered() {

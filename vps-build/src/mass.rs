@@ -3,12 +3,18 @@
 use glamx::{DMat3, DVec3};
 use vps_core::MassProperties;
 
-use crate::Mesh;
+use crate::{BuildError, Mesh};
 
 /// Volume, centre and inertia at density one, exact for a closed mesh that faces outwards: sums
-/// over the tetrahedra between an inner point and each triangle. `None` if the volume is not
-/// positive.
-pub fn mass_properties(mesh: &Mesh) -> Option<MassProperties> {
+/// over the tetrahedra between an inner point and each triangle.
+///
+/// # Errors
+/// When the mesh is open or has no positive volume.
+pub fn mass_properties(mesh: &Mesh) -> Result<MassProperties, BuildError> {
+    match mesh.open_edges() {
+        0 => {}
+        open => return Err(BuildError::Open(open)),
+    }
     let (low, high) = mesh.bounds();
     let origin = low.midpoint(high);
     let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);
@@ -36,7 +42,10 @@ pub fn mass_properties(mesh: &Mesh) -> Option<MassProperties> {
         -covariance.col(1)[2],
     ];
     let sound = volume > 0.0 && (0..3).all(|i| inertia[i] > 0.0);
-    sound.then(|| MassProperties {
+    if !sound {
+        return Err(BuildError::NotSolid);
+    }
+    Ok(MassProperties {
         volume: volume as f32,
         center_of_mass: (origin + center).as_vec3().to_array(),
         inertia: inertia.map(|i| i as f32),
@@ -87,6 +96,7 @@ mod tests {
     #[test]
     fn an_open_sheet_has_none() {
         let v = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        assert!(mass_properties(&Mesh::new(&v, &[[0, 1, 2]]).unwrap()).is_none());
+        let sheet = Mesh::new(&v, &[[0, 1, 2]]).unwrap();
+        assert_eq!(mass_properties(&sheet), Err(BuildError::Open(3)));
     }
 }

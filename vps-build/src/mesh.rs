@@ -205,6 +205,21 @@ impl Mesh {
             .fold(start, |(min, max), &v| (min.min(v), max.max(v)))
     }
 
+    /// How many edges have a triangle on one side and no fitting one on the other: 0 for a closed
+    /// mesh whose triangles all face the same way.
+    pub fn open_edges(&self) -> usize {
+        let mut balance = HashMap::new();
+        for &[a, b, c] in &self.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let way = if from < to { 1 } else { -1 };
+                *balance.entry((from.min(to), from.max(to))).or_insert(0_i64) += way;
+            }
+        }
+        // An edge of a triangle without area may begin and end at one vertex.
+        let open = |((from, to), balance): (&(u32, u32), &i64)| from != to && *balance != 0;
+        balance.iter().filter(|edge| open(*edge)).count()
+    }
+
     /// Area of all triangles in m².
     pub fn area(&self) -> f64 {
         (0..self.triangles.len())
@@ -226,15 +241,12 @@ mod tests {
             Mesh::cuboid([1.0, 2.0, 3.0]).unwrap(),
             Mesh::icosphere(0.5, 2).unwrap(),
         ] {
-            let mut edges = HashMap::new();
-            for &[a, b, c] in mesh.triangles() {
-                for edge in [(a, b), (b, c), (c, a)] {
-                    *edges.entry(edge).or_insert(0) += 1;
-                }
-            }
-            for (&(a, b), &count) in &edges {
-                assert_eq!((count, edges.get(&(b, a))), (1, Some(&1)));
-            }
+            assert_eq!(mesh.open_edges(), 0);
+            let holed = Mesh::new(mesh.vertices(), &mesh.triangles()[1..]).unwrap();
+            assert_eq!(holed.open_edges(), 3);
+            let mut turned = mesh.triangles().to_vec();
+            turned[0].reverse();
+            assert_eq!(Mesh::new(mesh.vertices(), &turned).unwrap().open_edges(), 3);
             for t in 0..mesh.triangles().len() {
                 let [a, b, c] = mesh.corners(t);
                 assert!((b - a).cross(c - a).dot(a + b + c) > 0.0);

@@ -27,7 +27,7 @@ pub struct Samples {
     pub positions: Vec<DVec3>,
     /// Unit inward normals.
     pub normals: Vec<Vec3>,
-    /// No two points are closer than this, in metres.
+    /// No two points are closer than this, in metres, unless they face away from each other.
     pub spacing: f64,
 }
 
@@ -77,25 +77,33 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
     }
 }
 
-/// Points no closer than `spacing` to each other, from a lattice of voxels that many times
-/// smaller by [`ALPHA`].
+/// Points no closer than `spacing` to each other, but for those on the two sides of a thin wall;
+/// from a lattice of voxels smaller than the spacing by [`ALPHA`].
 fn spread(mesh: &Mesh, spacing: f64) -> Vec<DVec3> {
     let size = spacing / ALPHA;
     let origin = mesh.bounds().0;
     let mut kept = Spaced::new(spacing);
     for t in 0..mesh.triangles().len() {
         let triangle = mesh.corners(t);
+        let [a, b, c] = triangle;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
         for_each_overlapped(triangle, origin, size, |_, center| {
-            kept.offer(closest_point(triangle, center).0);
+            kept.offer(closest_point(triangle, center).0, normal);
         });
     }
     kept.points
 }
 
+/// Points whose triangles face away from each other by more than this cosine are not neighbours,
+/// however close: they lie on the two sides of a thin wall.
+const OPPOSED: f64 = -0.5;
+
 /// Points that keep a distance, in cells of that size.
 struct Spaced {
     spacing: f64,
     points: Vec<DVec3>,
+    /// Of the triangles the points lie on.
+    normals: Vec<DVec3>,
     cells: HashMap<[i64; 3], Vec<u32>>,
 }
 
@@ -104,12 +112,13 @@ impl Spaced {
         Self {
             spacing,
             points: Vec::new(),
+            normals: Vec::new(),
             cells: HashMap::new(),
         }
     }
 
-    /// Keeps the point unless one of those kept is closer than the spacing.
-    fn offer(&mut self, point: DVec3) {
+    /// Keeps the point unless a neighbour is closer than the spacing.
+    fn offer(&mut self, point: DVec3, normal: DVec3) {
         let cell = (point / self.spacing).floor().as_i64vec3().to_array();
         let closest = self.spacing * self.spacing;
         for dz in -1..=1 {
@@ -118,7 +127,10 @@ impl Spaced {
                     let near = [cell[0] + dx, cell[1] + dy, cell[2] + dz];
                     let near = self.cells.get(&near).into_iter().flatten();
                     for &other in near {
-                        if self.points[other as usize].distance_squared(point) < closest {
+                        let other = other as usize;
+                        if self.points[other].distance_squared(point) < closest
+                            && self.normals[other].dot(normal) > OPPOSED
+                        {
                             return;
                         }
                     }
@@ -130,6 +142,7 @@ impl Spaced {
             .or_default()
             .push(self.points.len() as u32);
         self.points.push(point);
+        self.normals.push(normal);
     }
 }
 

@@ -113,6 +113,8 @@ fn the_command_builds_and_complains_in_one_line() {
     std::fs::write(path("nan.obj"), tetrahedron.replace("v 0 1 0", "v 0 nan 0")).unwrap();
     std::fs::write(path("range.obj"), tetrahedron.replace("f 1 3 2", "f 1 3 8")).unwrap();
     std::fs::write(path("open.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let inverted = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    std::fs::write(path("inverted.obj"), inverted).unwrap();
     std::fs::write(path("empty.obj"), "").unwrap();
     let out = path("out.vps");
     let fails = |mesh: &str, options: &[&str], expected: &str| {
@@ -129,7 +131,8 @@ fn the_command_builds_and_complains_in_one_line() {
     fails("nan.obj", &[], "nan.obj:3: `nan`");
     fails("range.obj", &[], "range.obj:5: ");
     fails("empty.obj", &[], "no triangles");
-    fails("open.obj", &[], "encloses no volume");
+    fails("open.obj", &[], "not closed: 3 edges");
+    fails("inverted.obj", &[], "face outwards");
     fails("good.obj", &["--voxel-size", "1e-5"], "MiB");
     fails("good.obj", &["--voxel-size", "0"], "voxel size");
     fails("good.obj", &["--scale", "0"], "scale");
@@ -145,6 +148,6 @@ fn the_command_builds_and_complains_in_one_line() {
             .point_count()
             > 100
     );
-    // Five meshes and one asset; nothing half-written is left.
-    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 6);
+    // Six meshes and one asset; nothing half-written is left.
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 7);
 }

@@ -310,11 +310,15 @@ fn broken_poses_give_no_contact() {
         Encoding::Distances(None),
     );
     let field = asset.voxelmap.trilinear();
+    let half_space = HalfSpace::new(Vec3::Y);
     for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let pose = Pose3::from_translation(Vec3::new(0.0, broken, 0.0));
         for margin in [0.0, 0.1] {
             let query = Query::new(&asset.tree, &field, pose);
             assert_eq!(query.with_margin(margin).deepest(), None);
+            let query = Query::new(&asset.tree, &half_space, pose);
+            assert_eq!(query.with_margin(margin).deepest(), None);
+            assert!(flat_contacts(&query).is_empty());
         }
     }
 }
@@ -333,5 +337,22 @@ fn flat_faces_are_sampled_exactly() {
         assert!((local.penetration(p, Vec3::Y) - depth).abs() < 2.0 * near);
         assert!((trilinear.penetration(p, Vec3::Y) - depth).abs() < 2.0 * near);
         assert!(local.inward_direction(p).distance(-Vec3::Y) < 0.02);
+    }
+}
+
+/// A wall thinner than the spacing has points on both sides.
+#[test]
+fn both_sides_of_a_thin_wall_are_sampled() {
+    let mesh = Mesh::cuboid([1.0, 0.01, 1.0]).unwrap();
+    let options = BuildOptions {
+        resolution: Resolution::VoxelSize(0.005),
+        points: 500,
+        ..BuildOptions::default()
+    };
+    let tree = build(&mesh, &options, &|_| ()).unwrap().tree;
+    for side in [-1.0, 1.0] {
+        let on_side = (0..tree.point_count()).filter(|&i| tree.point(i).y * side > 0.004);
+        let facing = on_side.clone().filter(|&i| tree.normal(i).y * side < 0.0);
+        assert!(on_side.count() > 180 && facing.count() > 180);
     }
 }
