@@ -51,7 +51,7 @@ impl SurfaceContact {
     /// the field has none, that of the shell.
     pub(crate) fn new(pair: &Pair<'_>, shell_to_field: &Pose, contact: &Contact) -> Self {
         let in_field = shell_to_field.transform_point(contact.position);
-        let mut inward = pair.field().inward_direction(in_field);
+        let mut inward = pair.inward_direction(in_field);
         if inward == Vec3::ZERO {
             inward = -(shell_to_field.rotation * contact.normal);
         }
@@ -85,9 +85,7 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
         unreachable!("the workspace was just made");
     };
     scratch.contacts.clear();
-    pair.query(pos12)
-        .with_margin(prediction)
-        .for_each_contact(|contact| scratch.contacts.push(contact));
+    pair.for_each_contact(pos12, prediction, |contact| scratch.contacts.push(contact));
     let mut old = std::mem::take(manifolds);
     let shell_to_field = pair.shell_to_field(pos12);
     let by_depth = |a: &&Contact, b: &&Contact| a.penetration.total_cmp(&b.penetration);

@@ -31,7 +31,7 @@ impl VpsDispatcher {
 
 /// The closest points of the two shapes, or the deepest ones. Tests every point of the shell.
 fn closest(pair: &Pair<'_>, pos12: &Pose, within: Real) -> Option<ParryContact> {
-    let contact = pair.query(pos12).with_margin(within).deepest()?;
+    let contact = pair.deepest(pos12, within)?;
     let surface = SurfaceContact::new(pair, &pair.shell_to_field(pos12), &contact);
     let (point1, point2) = pair.in_order(surface.on_shell, surface.on_field);
     let (normal1, normal2) = pair.in_order(surface.shell_normal, surface.field_normal);
@@ -51,7 +51,7 @@ impl QueryDispatcher for VpsDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        Ok(self.pair(g1, g2)?.query(pos12).touches().into())
+        Ok(self.pair(g1, g2)?.touches(pos12).into())
     }
 
     fn distance(
@@ -136,7 +136,9 @@ impl QueryDispatcher for VpsDispatcher {
 }
 
 /// Conservative advancement: as long as the shapes are apart, neither can meet the other sooner
-/// than their distance divided by their closing speed.
+/// than their distance divided by their closing speed. From afar the lower bound of the distance
+/// is taken, since distances of a voxelmap may be too large there; close by, where that bound is
+/// mostly its own error, half of the distance.
 fn cast(
     pair: &Pair<'_>,
     pose_at: impl Fn(Real) -> Pose,
@@ -144,6 +146,7 @@ fn cast(
     start_time: Real,
     options: ShapeCastOptions,
 ) -> Option<ShapeCastHit> {
+    let near = 4.0 * pair.resolution();
     let tolerance = 1e-4 * pair.tree.bounds().extents().length();
     let mut time = start_time;
     let mut status = ShapeCastStatus::OutOfIterations;
@@ -160,7 +163,8 @@ fn cast(
                 status = ShapeCastStatus::Converged;
                 break;
             }
-            time += free / closing_speed;
+            let sure = pair.clearance(&pose_at(time)) - options.target_distance;
+            time += sure.max(0.5 * free.min(near)) / closing_speed;
             // Also when nothing moves.
             let in_time = time <= options.max_time_of_impact;
             if !in_time {

@@ -27,9 +27,10 @@
 //! # What collides
 //! A VPS shape collides with VPS shapes and with every shape of parry that can project a point:
 //! balls, cuboids and half-spaces through exact distance fields, all others through
-//! [`ShapeField`]. Triangle meshes and height fields have no interior there, so that points are
-//! only held back within the engine's prediction distance. A VPS shape inside of a compound is
-//! not looked at yet: give the body several colliders in its place.
+//! [`ShapeField`], whose documentation says what it makes of surfaces without an interior. Against
+//! them the VPS shape is always the shell: a shape smaller than the spacing of its points can slip
+//! between them. A VPS shape inside of a compound is not looked at yet: give the body several
+//! colliders in its place.
 
 #![forbid(unsafe_code)]
 

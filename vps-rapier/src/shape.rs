@@ -7,7 +7,7 @@ use rapier3d::parry::query::{PointProjection, PointQuery, Ray, RayCast, RayInter
 use rapier3d::parry::shape::{FeatureId, Shape, ShapeType, SharedShape, TypedShape};
 use vps_core::{Asset, DistanceField, Vec3};
 
-/// What a shape is in a pair of VPS shapes (Fig. 5).
+/// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Rather the field.
@@ -171,7 +171,12 @@ impl RayCast for VpsShape {
             if free <= close && outside <= close {
                 return hit(time);
             }
-            time += (0.9 * free).max(outside).max(close) / speed;
+            let next = time + (0.9 * free).max(outside).max(close) / speed;
+            if next <= time {
+                // From this far away, 32 bits cannot tell two points of the ray apart.
+                return hit(time);
+            }
+            time = next;
             let passed = solid_box.center() - point;
             if outside > 0.0
                 && passed.dot(ray.dir) < 0.0
