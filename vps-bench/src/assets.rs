@@ -24,7 +24,7 @@ pub(crate) enum AssetError {
 /// An asset and what it took.
 pub(crate) struct Kept {
     pub(crate) asset: Arc<Asset<'static>>,
-    /// Of mesh, options and file version: what the asset is known by.
+    /// Of mesh, options, builder and file version: what the asset is known by.
     pub(crate) key: String,
     /// Size of its file in bytes.
     pub(crate) file_bytes: u64,
@@ -65,8 +65,8 @@ impl AssetCache {
 
 fn key(mesh: &Mesh, options: &BuildOptions) -> String {
     let mut hash = Sha256::new();
-    let version = env!("CARGO_PKG_VERSION");
-    hash.update(format!("{version} {VPS_VERSION} {options:?}"));
+    let builder = env!("VPS_BUILDER");
+    hash.update(format!("{builder} {VPS_VERSION} {options:?}"));
     for vertex in mesh.vertices() {
         for c in vertex.to_array() {
             hash.update(c.to_le_bytes());

@@ -74,7 +74,13 @@ enum Command {
 
 fn main() -> ExitCode {
     match execute(&Cli::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(failures) if failures.is_empty() => ExitCode::SUCCESS,
+        Ok(failures) => {
+            for failure in failures {
+                eprintln!("vps-bench: {failure}");
+            }
+            ExitCode::from(1)
+        }
         Err(error) => {
             eprintln!("vps-bench: {error}");
             ExitCode::from(2)
@@ -82,7 +88,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn execute(cli: &Cli) -> Result<(), Box<dyn std::error::Error>> {
+/// Does what was asked for; gives what failed of an experiment that was run all the same.
+fn execute(cli: &Cli) -> Result<Vec<String>, Box<dyn std::error::Error>> {
+    let mut failures = Vec::new();
     let models = || {
         Models::read(
             &cli.experiments.join("models.toml"),
@@ -119,6 +127,7 @@ fn execute(cli: &Cli) -> Result<(), Box<dyn std::error::Error>> {
                 let folder = cli.out.join(name);
                 records.write(&folder)?;
                 let table = report::report(&folder, &records)?;
+                failures.extend(records.failures());
                 println!("{}\n\n{table}", experiment.title);
                 println!("{}", folder.join("report.md").display());
             }
@@ -134,5 +143,5 @@ fn execute(cli: &Cli) -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     }
-    Ok(())
+    Ok(failures)
 }

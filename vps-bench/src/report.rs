@@ -111,16 +111,12 @@ fn prose(records: &Records, table: &str) -> String {
         );
     }
     text.push_str("\nAssets built by an earlier run were only read.\n");
-    let failed: Vec<_> = records.jobs.iter().filter(|j| j.status != "ok").collect();
-    if !failed.is_empty() {
-        text.push_str("\n## Simulations that failed\n\n");
+    let failures = records.failures();
+    if !failures.is_empty() {
+        text.push_str("\n## What failed\n\n");
     }
-    for job in failed {
-        let _ = writeln!(
-            text,
-            "* {}, orientation {}: {}",
-            job.algorithm, job.orientation, job.status
-        );
+    for failure in failures {
+        let _ = writeln!(text, "* {failure}");
     }
     text.push_str("\n## The paper's values\n\n");
     for value in &experiment.paper_value {
@@ -259,7 +255,7 @@ pub(crate) fn splice(path: &Path, name: &str, content: &str) -> Result<(), Error
     let (_, after) = rest
         .split_once(&close)
         .ok_or_else(|| format!("{}: the mark {close} is missing", path.display()))?;
-    let text = format!("{before}{open}\n{content}{close}{after}");
+    let text = format!("{before}{open}\n\n{content}\n{close}{after}");
     Ok(write_atomically(path, text.as_bytes())?)
 }
 

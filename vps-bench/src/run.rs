@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vps_build::{BuildError, BuildOptions, Mesh, Resolution, mass_properties, obj};
+use vps_build::{BuildOptions, Mesh, Resolution, mass_properties, obj};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
     AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
@@ -42,7 +42,7 @@ pub(crate) fn run(
     let mesh = obj::read(&path)?;
     let named = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let mesh = mesh.scaled(experiment.body.scale).map_err(|e| named(&e))?;
-    let mass = mass_properties(&mesh).ok_or_else(|| named(&BuildError::NotSolid))?;
+    let mass = mass_properties(&mesh).map_err(|e| named(&e))?;
     let drop = Drop {
         experiment,
         mass,
@@ -190,6 +190,20 @@ fn vps<'a>(settings: &config::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
 }
 
 impl Records {
+    /// What failed, one text each.
+    pub(crate) fn failures(&self) -> Vec<String> {
+        let preparations = self.preparations.iter().filter(|p| p.status != "ok");
+        let preparations = preparations.map(|p| format!("{}: {}", p.algorithm, p.status));
+        let jobs = self.jobs.iter().filter(|j| j.status != "ok");
+        let jobs = jobs.map(|j| {
+            format!(
+                "{}, orientation {}: {}",
+                j.algorithm, j.orientation, j.status
+            )
+        });
+        preparations.chain(jobs).collect()
+    }
+
     /// Writes all records into a folder.
     pub(crate) fn write(&self, folder: &Path) -> Result<(), Error> {
         crate::records::write(&folder.join("steps.csv"), &self.steps)?;

@@ -263,7 +263,7 @@ fn what_is_wrong_is_said_in_one_line() {
     project.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     project.fails(
         &["run", "fall", "--model", "flat.obj"],
-        &["flat.obj", "no volume"],
+        &["flat.obj", "not closed"],
     );
     project.fails(
         &["run", "fall", "--model", "box.obj", "--scale", "0"],
@@ -286,7 +286,8 @@ fn an_algorithm_that_fails_gives_a_row_and_the_rest_goes_on() {
     );
     project.write("experiments/fall.toml", &text);
     let (code, message) = project.bench(&["run", "fall", "--quick"]);
-    assert_eq!(code, Some(0), "{message}");
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("vps_fine: ") && message.contains("choose larger voxels"));
     let preparations = project.read("reports/fall/preparations.csv");
     assert!(
         preparations.contains("choose larger voxels"),
