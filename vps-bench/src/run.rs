@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vps_build::{BuildOptions, Mesh, Resolution, mass_properties, obj};
+use vps_build::{BuildOptions, Mesh, Resolution, mass_properties, read_mesh};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
     AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
@@ -39,7 +39,7 @@ pub(crate) fn run(
     assets: &AssetCache,
 ) -> Result<Records, Error> {
     let path = models.file(&experiment.body.model)?;
-    let mesh = obj::read(&path)?;
+    let mesh = read_mesh(&path, None)?;
     let named = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let mesh = mesh.scaled(experiment.body.scale).map_err(|e| named(&e))?;
     let mass = mass_properties(&mesh).map_err(|e| named(&e))?;

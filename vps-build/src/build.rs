@@ -105,7 +105,7 @@ pub enum BuildError {
     /// No solid.
     #[error(
         "the mesh is not closed: {0} edges have no triangle on their other side that faces the \
-         same way"
+         same way (see `vps-build inspect`)"
     )]
     Open(usize),
     /// A solid inside out.

@@ -18,7 +18,8 @@
 //!
 //! | step | module | in the paper |
 //! |---|---|---|
-//! | mesh from a file | [`obj`] | |
+//! | mesh from a file | [`read_mesh`] | |
+//! | what is wrong with it | [`Health`] | |
 //! | surface voxels, fill, layers | `layers` | 2.1.1 |
 //! | distances | `distance` | 2.1.1 |
 //! | pointshell | `sample` | 2.1.2 |
@@ -32,17 +33,20 @@ mod build;
 mod cluster;
 mod distance;
 mod file;
+mod health;
 mod kdtree;
 mod layers;
 mod mass;
 mod mesh;
-pub mod obj;
+mod read;
 mod sample;
 mod sat;
 mod triangle;
 
 pub use build::{BuildError, BuildOptions, Encoding, Resolution, Stage, build};
 pub use file::{FileError, read_asset, write_asset, write_atomically};
+pub use health::Health;
 pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
+pub use read::{MeshFormat, ReadError, read_mesh};
 pub use sample::Samples;

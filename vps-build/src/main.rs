@@ -1,12 +1,14 @@
 //! The `vps-build` command.
 
-use std::path::PathBuf;
-use std::process::ExitCode;
-use std::time::{Duration, Instant};
+#![forbid(unsafe_code)]
 
-use clap::{Args, Parser, Subcommand};
-use indicatif::ProgressBar;
-use vps_build::{BuildOptions, Encoding, Resolution, Stage, build, obj, write_asset};
+mod commands;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::commands::{build, inspect};
 
 /// Builds Voxelmap-Pointshell assets from meshes.
 #[derive(Parser)]
@@ -18,53 +20,17 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Build a .vps file from an OBJ mesh
-    Build(BuildArgs),
-}
-
-#[derive(Args)]
-struct BuildArgs {
-    /// The mesh, closed and facing outwards
-    mesh: PathBuf,
-    /// Where the asset goes
-    #[arg(short, long, value_name = "FILE.vps")]
-    output: PathBuf,
-    /// Metres a unit of the file is long
-    #[arg(long, default_value_t = 1.0)]
-    scale: f64,
-    /// Edge of a voxel in metres, after scaling
-    #[arg(long, conflicts_with = "voxels")]
-    voxel_size: Option<f64>,
-    /// Voxels along the longest side
-    #[arg(long, default_value_t = 100)]
-    voxels: u32,
-    /// Outer layers of voxels around the mesh
-    #[arg(long, default_value_t = 4)]
-    margin: u32,
-    /// About how many points the pointshell gets
-    #[arg(long, default_value_t = 10_000)]
-    points: u32,
-    /// Children of a cluster, K
-    #[arg(short = 'k', long, default_value_t = 4)]
-    branching: u32,
-    /// Store layers in place of distances
-    #[arg(long, conflicts_with = "precision")]
-    layers: bool,
-    /// Decimal places a distance in metres keeps [default: as many as fit]
-    #[arg(long)]
-    precision: Option<i32>,
-    /// Where the clustering starts
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Most memory the voxels may take while building, in MiB
-    #[arg(long, default_value_t = 4096)]
-    memory_limit: u64,
+    /// Build a .vps file from a mesh
+    Build(build::BuildArgs),
+    /// Tell what a mesh or a .vps file is like: a health report
+    Inspect(inspect::InspectArgs),
 }
 
 fn main() -> ExitCode {
     let Cli { command } = Cli::parse();
     let result = match command {
-        Command::Build(args) => run_build(&args),
+        Command::Build(args) => build::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -73,53 +39,4 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-fn run_build(args: &BuildArgs) -> Result<(), Box<dyn std::error::Error>> {
-    let start = Instant::now();
-    // Draws nothing when standard error is not a terminal.
-    let progress = ProgressBar::new_spinner();
-    progress.enable_steady_tick(Duration::from_millis(100));
-    progress.set_message("reading the mesh");
-    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", args.mesh.display());
-    let mesh = obj::read(&args.mesh)?;
-    let mesh = mesh.scaled(args.scale).map_err(|e| named(&e))?;
-    let options = BuildOptions {
-        resolution: match args.voxel_size {
-            Some(size) => Resolution::VoxelSize(size),
-            None => Resolution::VoxelsAlongLongest(args.voxels),
-        },
-        margin: args.margin,
-        points: args.points,
-        branching: args.branching,
-        encoding: if args.layers {
-            Encoding::Layers
-        } else {
-            Encoding::Distances(args.precision)
-        },
-        seed: args.seed,
-        memory_limit: args.memory_limit << 20,
-    };
-    let asset = build(&mesh, &options, &|stage| {
-        progress.set_message(match stage {
-            Stage::Voxels => "filling voxels",
-            Stage::Distances => "measuring distances",
-            Stage::Points => "spreading points",
-            Stage::Tree => "growing the tree",
-        });
-    })
-    .map_err(|e| named(&e))?;
-    write_asset(&args.output, &asset)?;
-    progress.finish_and_clear();
-    let [x, y, z] = asset.voxelmap.grid().dims();
-    println!(
-        "{}: {} triangles, {x} x {y} x {z} voxels of {:.6} m, {} points, {} levels, {:.2} s",
-        args.output.display(),
-        mesh.triangles().len(),
-        asset.voxelmap.grid().voxel_size(),
-        asset.tree.point_count(),
-        asset.tree.level_count(),
-        start.elapsed().as_secs_f64(),
-    );
-    Ok(())
 }

@@ -49,7 +49,7 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
     let mut best: Option<(f64, f64, Vec<DVec3>)> = None;
     for _ in 0..MOST_ROUNDS {
-        let positions = spread(mesh, spacing);
+        let positions = spread(mesh, spacing).points;
         let found = positions.len() as f64;
         let off = (found - target).abs();
         if best.as_ref().is_none_or(|(least, ..)| off < *least) {
@@ -79,7 +79,7 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
 
 /// Points no closer than `spacing` to each other, but for those on the two sides of a thin wall;
 /// from a lattice of voxels smaller than the spacing by [`ALPHA`].
-fn spread(mesh: &Mesh, spacing: f64) -> Vec<DVec3> {
+fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
     let size = spacing / ALPHA;
     let origin = mesh.bounds().0;
     let mut kept = Spaced::new(spacing);
@@ -91,7 +91,7 @@ fn spread(mesh: &Mesh, spacing: f64) -> Vec<DVec3> {
             kept.offer(closest_point(triangle, center).0, normal);
         });
     }
-    kept.points
+    kept
 }
 
 /// Points whose triangles face away from each other by more than this cosine are not neighbours,
@@ -144,6 +144,34 @@ impl Spaced {
         self.points.push(point);
         self.normals.push(normal);
     }
+}
+
+/// The share of the surface, from 0 to 1, behind which the other side of a wall is closer than
+/// `thickness` metres.
+pub(crate) fn opposed_within(mesh: &Mesh, thickness: f64) -> f64 {
+    // Fine enough that behind every thin place there is a point almost opposite.
+    let samples = spread(mesh, 0.5 * thickness);
+    let cell = |p: DVec3| (p / thickness).floor().as_i64vec3().to_array();
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    for (i, &point) in samples.points.iter().enumerate() {
+        cells.entry(cell(point)).or_default().push(i);
+    }
+    let is_thin = |&i: &usize| {
+        let (point, normal) = (samples.points[i], samples.normals[i]);
+        let [x, y, z] = cell(point);
+        let around = (-1..=1).flat_map(move |dx| {
+            (-1..=1).flat_map(move |dy| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]))
+        });
+        around.filter_map(|c| cells.get(&c)).flatten().any(|&j| {
+            let to_other = samples.points[j] - point;
+            let depth = -to_other.dot(normal);
+            let aside = (to_other + normal * depth).length();
+            let opposed = samples.normals[j].dot(normal) < OPPOSED;
+            opposed && depth > 0.0 && depth < thickness && aside < thickness
+        })
+    };
+    let thin = (0..samples.points.len()).filter(is_thin).count();
+    thin as f64 / samples.points.len() as f64
 }
 
 /// The gradient of the field at each point; where it has none, in the middle of a thin wall, the

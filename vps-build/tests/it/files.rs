@@ -1,7 +1,7 @@
 //! Files: what is written comes back, and damage is noticed.
 
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, Output};
 
 use crate::support::asset;
 use proptest::prelude::*;
@@ -93,11 +93,14 @@ proptest! {
     }
 }
 
+fn output(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vps-build"));
+    command.args(arguments).output().unwrap()
+}
+
+/// Exit status and what went to standard error.
 fn vps_build(arguments: &[&str]) -> (Option<i32>, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_vps-build"))
-        .args(arguments)
-        .output()
-        .unwrap();
+    let output = output(arguments);
     (
         output.status.code(),
         String::from_utf8(output.stderr).unwrap(),
@@ -150,4 +153,54 @@ fn the_command_builds_and_complains_in_one_line() {
     );
     // Six meshes and one asset; nothing half-written is left.
     assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 7);
+}
+
+#[test]
+fn inspect_reports_on_meshes_and_assets() {
+    let folder = Folder::new("inspect");
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    // A closed box, and one with a hole, a doubled triangle and a turned one.
+    let box_mesh = Mesh::cuboid([0.3, 0.2, 0.1]).unwrap();
+    let mut good = String::from("OFF\n8 12 0\n");
+    for v in box_mesh.vertices() {
+        good += &format!("{} {} {}\n", v.x, v.y, v.z);
+    }
+    let face = |[a, b, c]: [u32; 3]| format!("3 {a} {b} {c}\n");
+    let faces: Vec<_> = box_mesh.triangles().iter().map(|&t| face(t)).collect();
+    let [a, b, c] = box_mesh.triangles()[4];
+    let mut bad_faces = faces.clone();
+    bad_faces.remove(11);
+    bad_faces[4] = face([a, c, b]);
+    bad_faces.push(faces[0].clone());
+    std::fs::write(path("good.off"), good.clone() + &faces.concat()).unwrap();
+    std::fs::write(path("bad.off"), good + &bad_faces.concat()).unwrap();
+    let json = |name: &str| {
+        let output = output(&["inspect", &path(name), "--json"]);
+        assert_eq!(output.status.code(), Some(0));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let good = json("good.off");
+    assert_eq!(good["watertight"], true);
+    assert!((good["volume_m3"].as_f64().unwrap() - 0.006).abs() < 1e-6);
+    let bad = json("bad.off");
+    assert_eq!(bad["watertight"], false);
+    assert_eq!(
+        (&bad["boundary_loops"], &bad["duplicate_faces"]),
+        (&1.into(), &1.into())
+    );
+    assert!(bad["inconsistent_edges"].as_u64().unwrap() > 0);
+    let text = output(&["inspect", &path("bad.off")]).stdout;
+    assert!(String::from_utf8(text).unwrap().contains("holes"));
+
+    let asset = small();
+    write_asset(&folder.0.join("small.vps"), &asset).unwrap();
+    let inspected = json("small.vps");
+    assert_eq!(inspected["points"], asset.tree.point_count());
+    assert_eq!(inspected["voxels"][0], asset.voxelmap.grid().dims()[0]);
+    let (code, message) = vps_build(&["inspect", &path("none.vps")]);
+    assert_eq!(code, Some(2));
+    assert!(
+        message.contains("none.vps") && message.lines().count() == 1,
+        "{message}"
+    );
 }

@@ -1,0 +1,169 @@
+//! `vps-build inspect`: what a mesh or an asset is like.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+use vps_build::{Health, read_asset, read_mesh};
+use vps_core::Asset;
+
+use super::Error;
+
+#[derive(Args)]
+pub(crate) struct InspectArgs {
+    /// A mesh (.obj, .ply, .stl, .off) or an asset (.vps)
+    file: PathBuf,
+    /// The object of an OBJ file, in place of all
+    #[arg(long)]
+    object: Option<String>,
+    /// Metres a unit of a mesh is long
+    #[arg(long, default_value_t = 1.0)]
+    scale: f64,
+    /// Walls thinner than this are counted, in metres [default: a hundredth of the longest side]
+    #[arg(long)]
+    voxel_size: Option<f64>,
+    /// For machines
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &InspectArgs) -> Result<(), Error> {
+    let is_asset = args.file.extension().is_some_and(|e| e == "vps");
+    let rows = if is_asset {
+        asset_rows(&read_asset(&args.file)?)
+    } else {
+        mesh_rows(args)?
+    };
+    if args.json {
+        let object: serde_json::Map<_, _> = rows
+            .into_iter()
+            .map(|(name, value, _)| (name.to_owned(), value))
+            .collect();
+        println!("{}", serde_json::Value::from(object));
+        return Ok(());
+    }
+    for (name, value, remark) in rows {
+        let value = value.to_string().replace('"', "");
+        println!("{name:<20} {value:<28} {remark}");
+    }
+    Ok(())
+}
+
+type Row = (&'static str, serde_json::Value, &'static str);
+
+fn mesh_rows(args: &InspectArgs) -> Result<Vec<Row>, Error> {
+    let mesh = read_mesh(&args.file, args.object.as_deref())?;
+    let mesh = mesh
+        .scaled(args.scale)
+        .map_err(|e| format!("{}: {e}", args.file.display()))?;
+    let (low, high) = mesh.bounds();
+    let voxel_size = args
+        .voxel_size
+        .unwrap_or((high - low).max_element() / 100.0);
+    if !(voxel_size > 0.0 && voxel_size.is_finite()) {
+        return Err(format!("the voxel size must be positive, not {voxel_size}").into());
+    }
+    let health = Health::of(&mesh, voxel_size);
+    let unless = |count: usize, remark: &'static str| if count == 0 { "" } else { remark };
+    let volume_remark = if health.volume_m3 < 0.0 {
+        "the triangles face inwards"
+    } else {
+        ""
+    };
+    let thin_remark = if health.thin_share > 0.0 {
+        "choose smaller voxels, or expect walls to be filled"
+    } else {
+        ""
+    };
+    Ok(vec![
+        ("watertight", json!(health.is_watertight()), ""),
+        ("vertices", json!(health.vertices), ""),
+        ("triangles", json!(health.triangles), ""),
+        ("components", json!(health.components), ""),
+        ("boundary_edges", json!(health.boundary_edges), ""),
+        (
+            "boundary_loops",
+            json!(health.boundary_loops),
+            unless(health.boundary_loops, "holes"),
+        ),
+        (
+            "non_manifold_edges",
+            json!(health.non_manifold_edges),
+            unless(
+                health.non_manifold_edges,
+                "three triangles or more at an edge",
+            ),
+        ),
+        (
+            "inconsistent_edges",
+            json!(health.inconsistent_edges),
+            unless(
+                health.inconsistent_edges,
+                "neighbours that face different ways",
+            ),
+        ),
+        (
+            "duplicate_faces",
+            json!(health.duplicate_faces),
+            unless(health.duplicate_faces, "the same triangle again"),
+        ),
+        (
+            "degenerate_faces",
+            json!(health.degenerate_faces),
+            unless(health.degenerate_faces, "triangles without an area"),
+        ),
+        ("extents_m", json!(health.extents_m), ""),
+        ("area_m2", json!(health.area_m2), ""),
+        ("volume_m3", json!(health.volume_m3), volume_remark),
+        ("voxel_size_m", json!(voxel_size), ""),
+        ("thin_share", json!(health.thin_share), thin_remark),
+    ])
+}
+
+fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
+    let (map, tree, mass) = (&asset.voxelmap, &asset.tree, asset.mass);
+    let accuracy = map.accuracy();
+    let clusters: Vec<_> = (1..=tree.level_count())
+        .map(|l| tree.level(l).len())
+        .collect();
+    vec![
+        ("voxels", json!(map.grid().dims()), ""),
+        ("voxel_size_m", json!(map.grid().voxel_size()), ""),
+        (
+            "sigma_m",
+            json!(map.sigma()),
+            "what a step of a value is worth",
+        ),
+        (
+            "near_error_m",
+            json!(accuracy.near_m),
+            "largest error close to the surface",
+        ),
+        ("far_error_m", json!(accuracy.far_m), "and elsewhere"),
+        (
+            "band_m",
+            json!(accuracy.band_m),
+            "how far close to the surface reaches",
+        ),
+        ("map_bytes", json!(2 * map.values().len()), ""),
+        ("points", json!(tree.point_count()), ""),
+        ("levels", json!(tree.level_count()), ""),
+        ("clusters", json!(clusters), "of each level"),
+        (
+            "tree_bytes",
+            json!(24 * tree.point_count() + size_of_val(tree.clusters())),
+            "points, normals and clusters",
+        ),
+        (
+            "volume_m3",
+            json!(mass.volume),
+            "of the solid: its mass at density one",
+        ),
+        ("center_of_mass_m", json!(mass.center_of_mass), ""),
+        (
+            "inertia_kg_m2",
+            json!(mass.inertia),
+            "xx, yy, zz, xy, xz, yz at density one",
+        ),
+    ]
+}

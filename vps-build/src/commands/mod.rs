@@ -1,0 +1,7 @@
+//! What the command can do, a file each.
+
+pub(crate) mod build;
+pub(crate) mod inspect;
+
+/// One line for people.
+pub(crate) type Error = Box<dyn std::error::Error>;
