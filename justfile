@@ -25,11 +25,17 @@ reproduce-paper: fetch
 reproduce-smoke: fetch
     {{ bench }} run bunny_drop --quick --out target/smoke
 
-# All tests; those of the harness with the optimised build the experiments use
-test:
-    cargo test --locked --workspace --exclude vps-bench
+# All tests, with the same random cases every time
+test: (test-with "2014") no-std
+
+# All tests, with new random cases (proptest keeps what failed: commit it)
+test-random: (test-with "")
+
+# The harness is tested with the optimised build the experiments use.
+[private]
+test-with seed:
+    {{ if seed == "" { "" } else { "PROPTEST_RNG_SEED=" + seed } }} cargo test --locked --workspace --exclude vps-bench
     cargo test --locked --release -p vps-bench
-    just no-std
 
 # The core without a standard library and without an allocator: fails to build if either is needed
 no-std:
