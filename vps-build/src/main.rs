@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{build, inspect};
+use crate::commands::{build, export, inspect, sample};
 
 /// Builds Voxelmap-Pointshell assets from meshes.
 #[derive(Parser)]
@@ -24,6 +24,10 @@ enum Command {
     Build(build::BuildArgs),
     /// Tell what a mesh or a .vps file is like: a health report
     Inspect(inspect::InspectArgs),
+    /// Points, balls, voxels or the surface of a .vps file as PLY, to look at
+    Export(export::ExportArgs),
+    /// Penetration, gradient and error bound at the points of a CSV file
+    Sample(sample::SampleArgs),
 }
 
 fn main() -> ExitCode {
@@ -31,6 +35,8 @@ fn main() -> ExitCode {
     let result = match command {
         Command::Build(args) => build::run(&args),
         Command::Inspect(args) => inspect::run(&args),
+        Command::Sample(args) => sample::run(&args),
+        Command::Export(args) => export::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

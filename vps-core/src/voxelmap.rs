@@ -253,6 +253,25 @@ impl Trilinear<'_> {
     }
 }
 
+impl Trilinear<'_> {
+    /// How far [`penetration`](DistanceField::penetration) at `point` may be from the exact one, in
+    /// metres: the error bound of the field close to the surface, more far from it, and twice the
+    /// way to the grid more outside of the grid.
+    pub fn error_bound_at(&self, point: Vec3) -> f32 {
+        let map = self.0;
+        let way = map.grid.center_bounds().distance_outside(point);
+        // Beyond the band no value around the point may be taken for a near one.
+        let reach = 2.0 * HALF_DIAGONAL * map.grid.voxel_size();
+        let depth = self.penetration(point, Vec3::ZERO) + way;
+        let beyond = if depth.abs() + reach > map.accuracy.band_m {
+            map.accuracy.far_m - map.accuracy.near_m
+        } else {
+            0.0
+        };
+        self.error_bound() + beyond + 2.0 * way
+    }
+}
+
 impl DistanceField for Trilinear<'_> {
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
         let map = self.0;

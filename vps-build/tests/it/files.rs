@@ -5,8 +5,8 @@ use std::process::{Command, Output};
 
 use crate::support::asset;
 use proptest::prelude::*;
-use vps_build::{Encoding, Mesh, read_asset, write_asset};
-use vps_core::{Asset, FormatError, encode};
+use vps_build::{Encoding, Mesh, mass_properties, read_asset, read_mesh, write_asset};
+use vps_core::{Asset, DistanceField, FormatError, encode};
 
 /// Bytes at an address that is a multiple of 8.
 fn aligned(bytes: &[u8]) -> Vec<u64> {
@@ -203,4 +203,110 @@ fn inspect_reports_on_meshes_and_assets() {
         message.contains("none.vps") && message.lines().count() == 1,
         "{message}"
     );
+}
+
+#[test]
+fn samples_are_within_their_stated_error() {
+    let folder = Folder::new("sample");
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    write_asset(&folder.0.join("small.vps"), &small()).unwrap();
+    // In, on and around the box, up to far outside of the grid.
+    let mut points = String::from("x,y,z\n");
+    for i in 0..60 {
+        let at = 0.01 * f64::from(i) - 0.25;
+        points += &format!("{at},{},{}\n", 0.6 * at, 0.3 * at + 0.02);
+    }
+    std::fs::write(path("in.csv"), points).unwrap();
+    let sample = |points: &str| {
+        vps_build(&[
+            "sample",
+            &path("small.vps"),
+            "--points",
+            &path(points),
+            "-o",
+            &path("out.csv"),
+        ])
+    };
+    assert_eq!(sample("in.csv"), (Some(0), String::new()));
+    let exact = vps_core::Cuboid::new(vps_core::Vec3::new(0.15, 0.1, 0.05));
+    let text = std::fs::read_to_string(path("out.csv")).unwrap();
+    let mut lines = text.lines();
+    let header = "x,y,z,penetration_m,gradient_x,gradient_y,gradient_z,error_bound_m";
+    assert_eq!(lines.next(), Some(header));
+    let mut inside = 0;
+    for line in lines {
+        let v: Vec<f32> = line.split(',').map(|c| c.parse().unwrap()).collect();
+        let expected = -exact.signed_distance(vps_core::Vec3::new(v[0], v[1], v[2]));
+        assert!((v[3] - expected).abs() <= v[7], "{line}: exact {expected}");
+        inside += i32::from(v[3] > 0.0);
+    }
+    assert!(inside > 5 && text.lines().count() == 61);
+    std::fs::write(path("bad.csv"), "x,y,z\n0,0,0\n1,nan,0\n").unwrap();
+    std::fs::write(path("short.csv"), "x,y\n0,0\n").unwrap();
+    for (name, expected) in [
+        ("bad.csv", "row 2"),
+        ("short.csv", "missing field `z`"),
+        ("no.csv", "os error 2"),
+    ] {
+        let (code, message) = sample(name);
+        assert_eq!(code, Some(2));
+        assert!(
+            message.contains(name) && message.contains(expected),
+            "{message}"
+        );
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+}
+
+#[test]
+fn exports_are_meshes_again() {
+    let folder = Folder::new("export");
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    let asset = small();
+    write_asset(&folder.0.join("small.vps"), &asset).unwrap();
+    let export = |options: &[&str]| {
+        vps_build(
+            &[
+                &["export", &path("small.vps"), "-o", &path("out.ply")],
+                options,
+            ]
+            .concat(),
+        )
+    };
+    let vertices = || {
+        let text = std::fs::read_to_string(path("out.ply")).unwrap();
+        let line = text
+            .lines()
+            .find(|l| l.starts_with("element vertex"))
+            .unwrap();
+        line.rsplit(' ').next().unwrap().parse::<usize>().unwrap()
+    };
+    assert_eq!(export(&["--what", "surface"]).0, Some(0));
+    let surface = read_mesh(&folder.0.join("out.ply"), None).unwrap();
+    assert_eq!(surface.open_edges(), 0);
+    let volume = mass_properties(&surface).unwrap().volume;
+    // Corners and edges of the box are cut by up to a voxel.
+    assert!((volume / 0.006 - 1.0).abs() < 0.1, "{volume}");
+    assert_eq!(export(&["--what", "voxels"]).0, Some(0));
+    let voxels = read_mesh(&folder.0.join("out.ply"), None).unwrap();
+    assert!(voxels.triangles().len() > 1000);
+    assert_eq!(export(&["--what", "points"]).0, Some(0));
+    assert_eq!(vertices(), asset.tree.point_count());
+    for level in 1..=asset.tree.level_count() {
+        let level_text = level.to_string();
+        assert_eq!(
+            export(&["--what", "points", "--level", &level_text]).0,
+            Some(0)
+        );
+        assert_eq!(vertices(), asset.tree.level(level).len());
+        assert_eq!(
+            export(&["--what", "spheres", "--level", &level_text]).0,
+            Some(0)
+        );
+        let balls = read_mesh(&folder.0.join("out.ply"), None).unwrap();
+        assert_eq!(balls.triangles().len(), 320 * asset.tree.level(level).len());
+    }
+    let (code, message) = export(&["--what", "points", "--level", "99"]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("levels 1 to"), "{message}");
 }
