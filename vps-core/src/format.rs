@@ -14,8 +14,29 @@
 //! | 40..48 | number of clusters |
 //! | 48..64 | zeros |
 //!
-//! Sections in order: the parameters ([`Parameters`], 112 bytes), voxel values (i16), points and
-//! normals (3 x f32 each), clusters ([`Cluster`], 28 bytes), level starts (u32).
+//! Sections in order:
+//!
+//! | section | an element | bytes |
+//! |---|---|---|
+//! | parameters | see below | 112 |
+//! | voxel values v, x fastest, then y, then z | i16 | 2 |
+//! | points in metres, in the order of the leaves | 3 x f32 | 12 |
+//! | unit inward normals | 3 x f32 | 12 |
+//! | clusters, level by level from the top | a [`Cluster`]: centre 3 x f32, radius f32, first child, number of children, parent point (u32 each) | 28 |
+//! | level starts | u32 | 4 |
+//!
+//! The parameters, in metres where they have a unit:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 0..12 | voxels along x, y, z (u32) |
+//! | 12..24 | lowest corner of the grid (f32, as all that follow) |
+//! | 24..28 | voxel size s |
+//! | 28..32 | σ, what a step of a value is worth |
+//! | 32..56 | lowest and highest corner of the box of the mesh |
+//! | 56..68 | error near the surface, error elsewhere, where near ends (see [`Accuracy`]) |
+//! | 68..108 | [`MassProperties`]: volume, centre, inertia xx, yy, zz, xy, xz, yz |
+//! | 108..112 | zeros |
 
 use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;

@@ -50,7 +50,7 @@ mod aabb;
 mod asset;
 pub mod conformance;
 mod field;
-mod format;
+pub mod format;
 mod grid;
 mod manifold;
 mod query;
