@@ -91,6 +91,7 @@ fn near_surface(mesh: &Mesh, grid: &Grid, places: &[Place], distances: &mut [f32
         })
         .collect();
     let pseudonormals = Pseudonormals::new(mesh);
+    let centers = Centers::new(grid);
     let slab_voxels = SLAB * nx * ny;
     let voxels: Vec<Vec<SurfaceVoxel>> = distances
         .par_chunks_mut(slab_voxels)
@@ -99,36 +100,47 @@ fn near_surface(mesh: &Mesh, grid: &Grid, places: &[Place], distances: &mut [f32
         .map(|(slab, (distances, places))| {
             let slab_start = slab * SLAB;
             let slab_end = slab_start + distances.len() / (nx * ny);
-            let mut best = vec![(f64::INFINITY, 0_u32); distances.len()];
+            // The distance to beat and whose it is.
+            let mut best = vec![(reach, 0_u32); distances.len()];
             for (t, (low, high)) in ranges.iter().enumerate() {
                 let triangle = mesh.corners(t);
                 let [a, b, c] = triangle;
-                let normal = (b - a).cross(c - a).normalize_or_zero();
+                // No point of the triangle is further from its middle than this.
+                let middle = (a + b + c) / 3.0;
+                let radius = triangle
+                    .map(|v| v.distance(middle))
+                    .into_iter()
+                    .fold(0.0, f64::max);
+                let radius = radius * (1.0 + 1e-9);
                 for z in low[2].max(slab_start)..(high[2] + 1).min(slab_end) {
                     for y in low[1]..=high[1] {
+                        let row = ((z - slab_start) * ny + y) * nx;
+                        let (dy, dz) = (centers.y[y] - middle.y, centers.z[z] - middle.z);
+                        let aside = dy * dy + dz * dz;
                         for x in low[0]..=high[0] {
-                            let center = center(grid, [x, y, z]);
-                            if normal.dot(center - a).abs() > reach {
+                            let best = &mut best[row + x];
+                            let dx = centers.x[x] - middle.x;
+                            let hopeless = best.0 + radius;
+                            if dx * dx + aside > hopeless * hopeless {
                                 continue;
                             }
-                            let (closest, _) = closest_point(triangle, center);
-                            let squared = closest.distance_squared(center);
-                            let best = &mut best[((z - slab_start) * ny + y) * nx + x];
-                            if squared < best.0 {
-                                *best = (squared, t as u32);
+                            let center = centers.of([x, y, z]);
+                            let distance = closest_point(triangle, center).0.distance(center);
+                            if distance < best.0 {
+                                *best = (distance, t as u32);
                             }
                         }
                     }
                 }
             }
             let mut surface = Vec::new();
-            for (i, &(squared, triangle)) in best.iter().enumerate() {
-                if squared <= reach * reach {
-                    distances[i] = squared.sqrt() as f32;
+            for (i, &(distance, triangle)) in best.iter().enumerate() {
+                if distance < reach {
+                    distances[i] = distance as f32;
                 }
                 if places[i] == Place::Surface {
                     let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny) + slab_start);
-                    let center = center(grid, [x, y, z]);
+                    let center = centers.of([x, y, z]);
                     let t = triangle as usize;
                     let closest = closest_point(mesh.corners(t), center);
                     surface.push(SurfaceVoxel {
@@ -155,6 +167,7 @@ fn near_surface(mesh: &Mesh, grid: &Grid, places: &[Place], distances: &mut [f32
 fn far_away(mesh: &Mesh, grid: &Grid, surface: &Surface, distances: &mut [f32]) {
     let [nx, ny, _] = grid.dims().map(|n| n as usize);
     let along_z = closest_along_z(grid, surface);
+    let centers = Centers::new(grid);
     distances
         .par_chunks_mut(nx * ny)
         .zip(along_z.par_chunks(nx * ny))
@@ -194,7 +207,7 @@ fn far_away(mesh: &Mesh, grid: &Grid, surface: &Surface, distances: &mut [f32]) 
                         let row = feature_z as usize * ny + feature_y as usize;
                         last = (feature_x, surface.triangle(row, feature_x));
                     }
-                    let center = center(grid, [x, y, z]);
+                    let center = centers.of([x, y, z]);
                     let (closest, _) = closest_point(mesh.corners(last.1), center);
                     *distance = closest.distance(center) as f32;
                 });
@@ -281,8 +294,33 @@ impl Envelope {
     }
 }
 
-fn center(grid: &Grid, voxel: [usize; 3]) -> DVec3 {
-    grid.center(voxel.map(|c| c as u32)).as_dvec3()
+/// Coordinates of all voxel centres, as a query sees them.
+struct Centers {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    z: Vec<f64>,
+}
+
+impl Centers {
+    fn new(grid: &Grid) -> Self {
+        let along = |axis: usize| {
+            let center = |c| {
+                let mut voxel = [0; 3];
+                voxel[axis] = c;
+                f64::from(grid.center(voxel)[axis])
+            };
+            (0..grid.dims()[axis]).map(center).collect()
+        };
+        Self {
+            x: along(0),
+            y: along(1),
+            z: along(2),
+        }
+    }
+
+    fn of(&self, [x, y, z]: [usize; 3]) -> DVec3 {
+        DVec3::new(self.x[x], self.y[y], self.z[z])
+    }
 }
 
 /// The first and the last voxel, along each axis, of those that hold a box.

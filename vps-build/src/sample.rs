@@ -1,9 +1,8 @@
 //! The pointshell (section 2.1.2): centres of surface voxels projected onto the triangles, kept
 //! when they are not too close to each other.
 
-use std::collections::HashMap;
-
 use glamx::DVec3;
+use rustc_hash::FxHashMap;
 use vps_core::{DistanceField, Vec3, Voxelmap};
 
 use crate::Mesh;
@@ -14,11 +13,13 @@ use crate::triangle::closest_point;
 const ALPHA: f64 = std::f64::consts::SQRT_2;
 
 /// How far a point count may be from the one asked for, as a fraction, before another spacing is
-/// tried.
-const COUNT_TOLERANCE: f64 = 0.001;
+/// tried: little while all rounds together have made few points, then more.
+const STRICT_TOLERANCE: f64 = 0.001;
+const COUNT_TOLERANCE: f64 = 0.005;
+const CHEAP_POINTS: u64 = 100_000;
 
 /// How many spacings are tried.
-const MOST_ROUNDS: u32 = 12;
+const MOST_ROUNDS: u64 = 12;
 
 /// Points on a surface, in no order.
 #[derive(Clone, Debug)]
@@ -48,14 +49,22 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
     // Spacings that gave too many points and too few; the truth lies between.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
     let mut best: Option<(f64, f64, Vec<DVec3>)> = None;
-    for _ in 0..MOST_ROUNDS {
+    for round in 0..MOST_ROUNDS {
         let positions = spread(mesh, spacing).points;
         let found = positions.len() as f64;
         let off = (found - target).abs();
         if best.as_ref().is_none_or(|(least, ..)| off < *least) {
             best = Some((off, spacing, positions));
         }
-        if off <= COUNT_TOLERANCE * target {
+        let tolerance = if round * u64::from(count) < CHEAP_POINTS {
+            STRICT_TOLERANCE
+        } else {
+            COUNT_TOLERANCE
+        };
+        if best
+            .as_ref()
+            .is_some_and(|(least, ..)| *least <= tolerance * target)
+        {
             break;
         }
         if found > target {
@@ -104,7 +113,7 @@ struct Spaced {
     points: Vec<DVec3>,
     /// Of the triangles the points lie on.
     normals: Vec<DVec3>,
-    cells: HashMap<[i64; 3], Vec<u32>>,
+    cells: FxHashMap<[i64; 3], Vec<u32>>,
 }
 
 impl Spaced {
@@ -113,7 +122,7 @@ impl Spaced {
             spacing,
             points: Vec::new(),
             normals: Vec::new(),
-            cells: HashMap::new(),
+            cells: FxHashMap::default(),
         }
     }
 
@@ -152,7 +161,7 @@ pub(crate) fn opposed_within(mesh: &Mesh, thickness: f64) -> f64 {
     // Fine enough that behind every thin place there is a point almost opposite.
     let samples = spread(mesh, 0.5 * thickness);
     let cell = |p: DVec3| (p / thickness).floor().as_i64vec3().to_array();
-    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut cells: FxHashMap<[i64; 3], Vec<usize>> = FxHashMap::default();
     for (i, &point) in samples.points.iter().enumerate() {
         cells.entry(cell(point)).or_default().push(i);
     }
