@@ -3,11 +3,13 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use polars::prelude::DataFrame;
 use vps_build::write_atomically;
 
+use crate::config::{Algorithm, Experiment};
 use crate::figures::{Curve, Figure, Mark, color};
 use crate::run::Records;
-use crate::summary::{StepMedian, SummaryRow, course, summarize};
+use crate::summary::{StepMedian, SummaryRow, course, frame, summarize};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -16,10 +18,12 @@ const REFERENCE: &str = "vps_fine";
 
 /// Writes `summary.csv`, the figures and `report.md` beside the records; gives the table.
 pub(crate) fn report(folder: &Path, records: &Records) -> Result<String, Error> {
-    let summary = summarize(&records.environment.experiment, &records.steps)?;
+    let experiment = &records.environment.experiment;
+    let steps = frame(&records.steps)?;
+    let summary = summarize(experiment, &steps)?;
     crate::records::write(&folder.join("summary.csv"), &summary)?;
     let table = table(&summary);
-    draw(folder, records)?;
+    draw(folder, experiment, &steps)?;
     let text = prose(records, &table);
     write_atomically(&folder.join("report.md"), text.as_bytes())?;
     Ok(table)
@@ -153,21 +157,19 @@ fn prose(records: &Records, table: &str) -> String {
     text
 }
 
-fn draw(folder: &Path, records: &Records) -> Result<(), Error> {
-    let experiment = &records.environment.experiment;
+fn draw(folder: &Path, experiment: &Experiment, steps: &DataFrame) -> Result<(), Error> {
     let mut courses = Vec::new();
     for (i, algorithm) in experiment.algorithm.iter().enumerate() {
-        let course = course(&records.steps, &algorithm.name)?;
+        let course = course(steps, &algorithm.name)?;
         courses.push((algorithm, color(i), course));
     }
-    let steps = f64::from(experiment.world.steps);
+    let last_step = f64::from(experiment.world.steps);
     let curves = |value: fn(&StepMedian) -> Option<f64>| {
-        let curve =
-            |(algorithm, color, course): &(&crate::config::Algorithm, _, Vec<StepMedian>)| Curve {
-                label: algorithm.label.clone(),
-                color: *color,
-                runs: runs(course, value),
-            };
+        let curve = |(algorithm, color, course): &(&Algorithm, _, Vec<StepMedian>)| Curve {
+            label: algorithm.label.clone(),
+            color: *color,
+            runs: runs(course, value),
+        };
         courses.iter().map(curve).collect::<Vec<_>>()
     };
     let [from, to] = experiment.runs.measured_steps.map(f64::from);
@@ -188,7 +190,7 @@ fn draw(folder: &Path, records: &Records) -> Result<(), Error> {
         title: "Time of the collision query, median of all start orientations".into(),
         x_label: "step".into(),
         y_label: "time (µs)".into(),
-        x: 0.0..steps,
+        x: 0.0..last_step,
         // Room for the legend above the curves.
         y: y.start..y.end * 1000.0,
         curves: times,
@@ -202,7 +204,7 @@ fn draw(folder: &Path, records: &Records) -> Result<(), Error> {
         title: "Linear velocity, median of all start orientations".into(),
         x_label: "step".into(),
         y_label: "velocity (m/s)".into(),
-        x: 0.0..steps,
+        x: 0.0..last_step,
         y: y.start..y.end * 100.0,
         curves: velocities,
         marks: Vec::new(),

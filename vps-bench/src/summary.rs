@@ -38,7 +38,8 @@ pub(crate) struct StepMedian {
     pub(crate) linear_velocity_m_s: f64,
 }
 
-fn frame(rows: &[StepRow]) -> PolarsResult<DataFrame> {
+/// The rows as columns, for all tables made from them.
+pub(crate) fn frame(rows: &[StepRow]) -> PolarsResult<DataFrame> {
     let numbers = |f: fn(&StepRow) -> Option<f64>| rows.iter().map(f).collect::<Vec<_>>();
     let names: Vec<_> = rows.iter().map(|r| r.algorithm.as_str()).collect();
     let steps: Vec<_> = rows.iter().map(|r| r.step).collect();
@@ -57,10 +58,10 @@ fn frame(rows: &[StepRow]) -> PolarsResult<DataFrame> {
 /// One row an algorithm, in the order of the experiment; algorithms without a row are left out.
 pub(crate) fn summarize(
     experiment: &Experiment,
-    rows: &[StepRow],
+    steps: &DataFrame,
 ) -> PolarsResult<Vec<SummaryRow>> {
     let [from, to] = experiment.runs.measured_steps;
-    let all = frame(rows)?.lazy();
+    let all = steps.clone().lazy();
     let quantile = |q: f64| col("query_us").quantile(lit(q), QuantileMethod::Linear);
     let measured = all
         .clone()
@@ -130,8 +131,9 @@ pub(crate) fn summarize(
 }
 
 /// The course of one algorithm over the steps.
-pub(crate) fn course(rows: &[StepRow], algorithm: &str) -> PolarsResult<Vec<StepMedian>> {
-    let medians = frame(rows)?
+pub(crate) fn course(steps: &DataFrame, algorithm: &str) -> PolarsResult<Vec<StepMedian>> {
+    let medians = steps
+        .clone()
         .lazy()
         .filter(col("algorithm").eq(lit(algorithm)))
         .group_by([col("step")])

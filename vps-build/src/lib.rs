@@ -49,4 +49,3 @@ pub use health::Health;
 pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
 pub use read::{MeshFormat, ReadError, read_mesh};
-pub use sample::Samples;

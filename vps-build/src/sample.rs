@@ -22,23 +22,11 @@ const CHEAP_POINTS: u64 = 100_000;
 const MOST_ROUNDS: u64 = 12;
 
 /// Points on a surface, in no order.
-#[derive(Clone, Debug)]
-pub struct Samples {
+pub(crate) struct Samples {
     /// Positions in metres.
-    pub positions: Vec<DVec3>,
+    pub(crate) positions: Vec<DVec3>,
     /// Unit inward normals.
-    pub normals: Vec<Vec3>,
-    /// No two points are closer than this, in metres, unless they face away from each other.
-    pub spacing: f64,
-}
-
-impl Samples {
-    /// Every point of the mesh is this close to a sample, in metres: it lies no further than half
-    /// a voxel's diagonal from a projected centre, and that one no further than the spacing from a
-    /// kept one.
-    pub fn coverage(&self) -> f64 {
-        self.spacing * (1.0 + 0.75_f64.sqrt() / ALPHA)
-    }
+    pub(crate) normals: Vec<Vec3>,
 }
 
 /// Samples the mesh with about `count` points, with normals from the field.
@@ -48,13 +36,13 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
     let mut spacing = (mesh.area() / (0.7 * target)).sqrt();
     // Spacings that gave too many points and too few; the truth lies between.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
-    let mut best: Option<(f64, f64, Vec<DVec3>)> = None;
+    let mut best: Option<(f64, Vec<DVec3>)> = None;
     for round in 0..MOST_ROUNDS {
         let positions = spread(mesh, spacing).points;
         let found = positions.len() as f64;
         let off = (found - target).abs();
         if best.as_ref().is_none_or(|(least, ..)| off < *least) {
-            best = Some((off, spacing, positions));
+            best = Some((off, positions));
         }
         let tolerance = if round * u64::from(count) < CHEAP_POINTS {
             STRICT_TOLERANCE
@@ -77,13 +65,9 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
             spacing = f64::midpoint(too_small, too_large);
         }
     }
-    let (_, spacing, positions) = best.expect("at least one round");
+    let (_, positions) = best.expect("at least one round");
     let normals = inward_normals(mesh, &positions, map);
-    Samples {
-        positions,
-        normals,
-        spacing,
-    }
+    Samples { positions, normals }
 }
 
 /// Points no closer than `spacing` to each other, but for those on the two sides of a thin wall;
