@@ -47,7 +47,7 @@ impl AssetCache {
             Ok(asset) => asset,
             Err(_) => {
                 let start = Instant::now();
-                let asset = build(mesh, options, &|_| ())?;
+                let asset = build(mesh, options, &|_| ())?.asset;
                 build_s = Some(start.elapsed().as_secs_f64());
                 write_asset(&path, &asset)?;
                 asset

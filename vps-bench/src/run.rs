@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vps_build::{BuildOptions, Mesh, Resolution, mass_properties, read_mesh};
+use vps_build::{BuildOptions, Mesh, PointCount, Resolution, mass_properties, read_mesh};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
     AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
@@ -167,7 +167,7 @@ fn vps<'a>(settings: &config::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
             resolution: Resolution::VoxelSize(size),
             margin: settings.ground_margin.unwrap_or(4),
             // It is never the shell.
-            points: 100,
+            points: PointCount::About(100),
             ..BuildOptions::default()
         }),
         None => VpsGround::Cuboid,
@@ -176,7 +176,7 @@ fn vps<'a>(settings: &config::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
         body: BuildOptions {
             resolution: Resolution::VoxelSize(settings.voxel_size_m),
             margin: settings.margin,
-            points: settings.points,
+            points: PointCount::About(settings.points),
             branching: settings.branching,
             ..BuildOptions::default()
         },

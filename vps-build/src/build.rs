@@ -1,9 +1,11 @@
-use rayon::prelude::*;
-use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, TreeError, Voxelmap, VoxelmapError};
+use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelmap, VoxelmapError};
 
-use crate::layers::{layers, places};
-use crate::mass::mass_properties;
-use crate::{Mesh, cluster, distance, sample};
+use crate::distance::{Exact, by_gradient_walk};
+use crate::layers::layers;
+use crate::mass::{mass_of_mesh, mass_of_voxels};
+use crate::solid::{Repairs, Sign, Solid, solid};
+use crate::sparse::{Coding, Source, Tolerance, sparse};
+use crate::{Mesh, MeshError, cluster, sample};
 
 /// How fine the voxels are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,14 +16,55 @@ pub enum Resolution {
     VoxelsAlongLongest(u32),
 }
 
-/// What the integers of the voxelmap mean (section 2.1.1).
+/// How many points a pointshell gets (section 2.1.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PointCount {
+    /// As many as this, to within 2 %.
+    About(u32),
+    /// As many as there are with this distance in metres between them.
+    Spacing(f64),
+}
+
+/// What the values of the voxelmap mean (section 2.1.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// Layers, one voxel size apart.
+    /// 16-bit layers, one voxel size apart.
     Layers,
-    /// Distances in metres truncated to this many decimal places (eq. 1), or to as many as fit.
+    /// 16-bit distances in metres truncated to this many decimal places (eq. 1), or to as many as
+    /// fit.
     Distances(Option<i32>),
+    /// 32-bit floating-point distances in metres.
+    Floats,
 }
+
+/// How the point of the mesh that is closest to a voxel is found (section 2.1.1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ClosestPoints {
+    /// Among all triangles.
+    #[default]
+    Exact,
+    /// As in the paper: on the triangle closest to the surface voxel that is reached by following
+    /// the gradient of the layered map.
+    GradientWalk,
+}
+
+/// Whether all voxels have a value stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Density {
+    /// Up to [`DENSE_VOXELS`] voxels.
+    #[default]
+    Auto,
+    /// All.
+    Dense,
+    /// Only those that cannot be interpolated to within one voxel size.
+    Sparse,
+}
+
+/// Up to how many voxels a map is dense unless asked otherwise.
+pub const DENSE_VOXELS: usize = 1 << 16;
+
+/// Up to how many voxels from the surface every voxel is stored as it is.
+pub(crate) const BAND: f64 = 4.0;
 
 /// What to build.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,12 +73,18 @@ pub struct BuildOptions {
     pub resolution: Resolution,
     /// Outer layers around the box of the mesh, at least 1.
     pub margin: u32,
-    /// About how many points the pointshell gets.
-    pub points: u32,
+    /// How many points the pointshell gets.
+    pub points: PointCount,
     /// Children of a cluster K, at least 2.
     pub branching: u32,
     /// What the voxels hold.
     pub encoding: Encoding,
+    /// How distances are found.
+    pub closest_points: ClosestPoints,
+    /// Whether all voxels are stored.
+    pub density: Density,
+    /// Which side of a triangle is the inside.
+    pub sign: Sign,
     /// Where the clustering starts.
     pub seed: u64,
     /// The most memory voxels and points may take while they are made, in bytes.
@@ -48,9 +97,12 @@ impl Default for BuildOptions {
         Self {
             resolution: Resolution::VoxelsAlongLongest(100),
             margin: 4,
-            points: 10_000,
+            points: PointCount::About(10_000),
             branching: 4,
             encoding: Encoding::Distances(None),
+            closest_points: ClosestPoints::default(),
+            density: Density::default(),
+            sign: Sign::default(),
             seed: 1,
             memory_limit: 4 << 30,
         }
@@ -72,6 +124,17 @@ pub enum BuildError {
     /// A shell needs points.
     #[error("the number of points must be at least 1")]
     Points,
+    /// Points need a distance.
+    #[error("the spacing of points must be positive and finite, not {0} m")]
+    Spacing(f64),
+    /// Points that would be too many.
+    #[error("with {spacing_m} m between them there would be about {points} points: choose more")]
+    TooManyPoints {
+        /// The distance asked for.
+        spacing_m: f64,
+        /// How many points there would be.
+        points: u64,
+    },
     /// A tree that does not shrink never ends.
     #[error("the branching K must be at least 2, not {0}")]
     Branching(u32),
@@ -108,9 +171,15 @@ pub enum BuildError {
          same way (see `vps-build inspect`)"
     )]
     Open(usize),
-    /// A solid inside out.
-    #[error("the mesh encloses no volume: do its triangles face outwards?")]
+    /// A solid inside out, or none.
+    #[error(
+        "the mesh encloses no volume: it may be a sheet, or its faces may be turned at random \
+         (see `vps-build inspect`; `--sign fill` does not mind how they are turned)"
+    )]
     NotSolid,
+    /// What repairs leave is no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// The grid was refused.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -135,45 +204,96 @@ pub enum Stage {
     Tree,
 }
 
-/// Bytes a voxel takes while distances are made: its place, its penetration, the closest surface
-/// voxel along z and its value.
-const BYTES_PER_VOXEL: u64 = 1 + 4 + 2 + 2;
+/// Bytes a voxel takes around the mesh: its place and winding number.
+const BYTES_PER_PLACE: f64 = 5.0;
+
+/// Bytes a voxel takes where all are stored: its layer, its penetration and its value.
+const BYTES_PER_VOXEL: f64 = 2.0 + 4.0 + 4.0 + 2.0;
+
+/// Bytes a voxel takes in a sparse map, while it is built, if the surface winds through a tenth of
+/// all cells.
+const BYTES_PER_SPARSE_VOXEL: f64 = 0.5;
 
 /// Bytes a point takes until it is in its tree.
-const BYTES_PER_POINT: u64 = 512;
+const BYTES_PER_POINT: f64 = 512.0;
 
-/// Makes voxelmap, pointshell, tree and mass properties of a closed mesh; `on_stage` hears of
-/// every step. The same mesh and options give the same asset, whatever the number of threads.
+/// An asset, and what had to be done to the mesh first.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// Voxelmap, pointshell, tree and mass properties.
+    pub asset: Asset<'static>,
+    /// How the mesh was made a solid.
+    pub repairs: Repairs,
+}
+
+/// Makes voxelmap, pointshell, tree and mass properties of a mesh; `on_stage` hears of every step.
+/// The same mesh and options give the same asset, whatever the number of threads.
 ///
 /// # Errors
-/// When an option is out of range, the voxels need too much memory, or the mesh is no solid.
+/// When an option is out of range, the voxels need too much memory, or the mesh encloses nothing.
 pub fn build(
     mesh: &Mesh,
     options: &BuildOptions,
     on_stage: &dyn Fn(Stage),
-) -> Result<Asset<'static>, BuildError> {
-    if options.points == 0 {
-        return Err(BuildError::Points);
-    }
+) -> Result<Built, BuildError> {
     if options.branching < 2 {
         return Err(BuildError::Branching(options.branching));
     }
-    let grid = grid(mesh, options)?;
-    let mass = mass_properties(mesh)?;
+    let points = most_points(mesh, options.points)?;
+    let grid = grid(mesh, options, points)?;
     on_stage(Stage::Voxels);
-    let voxelmap = voxelmap(mesh, grid, options.encoding, on_stage)?;
+    let solid = solid(mesh, options.sign, &grid)?;
+    let mass = if solid.is_closed {
+        mass_of_mesh(&solid.mesh)?
+    } else {
+        mass_of_voxels(&solid.places, &grid)?
+    };
+    on_stage(Stage::Distances);
+    let voxelmap = voxelmap(&solid, grid, options)?;
     on_stage(Stage::Points);
-    let samples = sample::sample(mesh, options.points, &voxelmap);
+    let samples = sample::sample(&solid.mesh, options.points, &voxelmap);
     on_stage(Stage::Tree);
     let tree = cluster::build_tree(&samples, options.branching as usize, options.seed)?;
-    Ok(Asset {
-        voxelmap,
-        tree,
-        mass,
+    Ok(Built {
+        asset: Asset {
+            voxelmap,
+            tree,
+            mass,
+        },
+        repairs: solid.repairs,
     })
 }
 
-fn grid(mesh: &Mesh, options: &BuildOptions) -> Result<Grid, BuildError> {
+/// How many points there may be.
+fn most_points(mesh: &Mesh, points: PointCount) -> Result<f64, BuildError> {
+    match points {
+        PointCount::About(0) => Err(BuildError::Points),
+        PointCount::About(count) => Ok(f64::from(count)),
+        PointCount::Spacing(spacing) => {
+            if !(spacing > 0.0 && spacing.is_finite()) {
+                return Err(BuildError::Spacing(spacing));
+            }
+            let most = sample::about_count(mesh.area(), spacing);
+            if most > f64::from(u32::MAX >> 2) {
+                return Err(BuildError::TooManyPoints {
+                    spacing_m: spacing,
+                    points: most as u64,
+                });
+            }
+            Ok(most)
+        }
+    }
+}
+
+fn is_dense(density: Density, voxels: f64) -> bool {
+    match density {
+        Density::Auto => voxels <= DENSE_VOXELS as f64,
+        Density::Dense => true,
+        Density::Sparse => false,
+    }
+}
+
+fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
     let (low, high) = mesh.bounds();
     let extents = high - low;
     let size = match options.resolution {
@@ -188,12 +308,20 @@ fn grid(mesh: &Mesh, options: &BuildOptions) -> Result<Grid, BuildError> {
         return Err(BuildError::Margin);
     }
     // A side that is a whole number of voxels long stays so in spite of rounding.
-    let margins = 2.0 * f64::from(options.margin);
-    let dims = (extents / size - 1e-6).ceil().max(glamx::DVec3::ONE) + margins;
-    let slices = dims.z.min(distance::slices_at_once() as f64);
-    let needed = dims.element_product() * BYTES_PER_VOXEL as f64
-        + dims.x * dims.y * slices * distance::BYTES_PER_VOXEL_AT_ONCE as f64
-        + f64::from(options.points) * BYTES_PER_POINT as f64;
+    let inner = (extents / size - 1e-6).ceil().max(glamx::DVec3::ONE);
+    let dims = inner + 2.0 * f64::from(options.margin);
+    let voxels = dims.element_product();
+    let has_table = is_dense(options.density, voxels)
+        || options.encoding == Encoding::Layers
+        || options.closest_points == ClosestPoints::GradientWalk;
+    let per_voxel = if has_table {
+        BYTES_PER_VOXEL
+    } else {
+        BYTES_PER_SPARSE_VOXEL
+    };
+    let needed = voxels * per_voxel
+        + (inner + 2.0).element_product() * BYTES_PER_PLACE
+        + points * BYTES_PER_POINT;
     if needed > options.memory_limit as f64 || dims.max_element() >= f64::from(u16::MAX) {
         return Err(BuildError::Memory {
             dims: dims.to_array().map(|n| n as u64),
@@ -207,12 +335,11 @@ fn grid(mesh: &Mesh, options: &BuildOptions) -> Result<Grid, BuildError> {
 }
 
 fn voxelmap(
-    mesh: &Mesh,
+    solid: &Solid,
     grid: Grid,
-    encoding: Encoding,
-    on_stage: &dyn Fn(Stage),
+    options: &BuildOptions,
 ) -> Result<Voxelmap<'static>, BuildError> {
-    let places = places(mesh, &grid);
+    let Solid { mesh, places, .. } = solid;
     let (low, high) = mesh.bounds();
     let bounds = grid.bounds();
     // Rounding may leave the mesh a hair outside of the grid's own numbers.
@@ -220,58 +347,94 @@ fn voxelmap(
         min: bounds.clamp(low.as_vec3()),
         max: bounds.clamp(high.as_vec3()),
     };
-    let size = grid.voxel_size();
-    let (values, sigma, accuracy) = match encoding {
-        Encoding::Layers => {
-            // The centre of layer n is between (n - 1/2) s and √3 (n + 1/2) s from the surface.
-            let error = |layers: f32| (1.7321 * (layers + 0.5) - layers) * size;
-            let values = layers(&grid, &places);
-            let most = values.iter().map(|v| v.unsigned_abs()).max().unwrap_or(0);
-            let band = distance::BAND as f32;
-            let accuracy = Accuracy {
-                near_m: error(band),
-                far_m: error(f32::from(most).max(band)),
-                band_m: band * size,
-            };
-            (values, size, accuracy)
+    let size = f64::from(grid.voxel_size());
+    let is_dense = is_dense(options.density, grid.voxel_count() as f64);
+    let exact;
+    let table;
+    let source = match (options.encoding, options.closest_points) {
+        (Encoding::Layers, _) => {
+            table = layers(&grid, places)
+                .iter()
+                .map(|&layer| f32::from(layer) * grid.voxel_size())
+                .collect::<Vec<_>>();
+            Source::Table(&table)
         }
-        Encoding::Distances(precision) => {
-            on_stage(Stage::Distances);
-            let penetrations = distance::penetrations(mesh, &grid, &places);
-            let (values, lambda) = truncated(&penetrations, precision)?;
-            // One truncated step, and the rounding of 32-bit coordinates.
-            let near_m = lambda + 8.0 * f32::EPSILON * bounds.extents().length();
-            let accuracy = Accuracy {
-                near_m,
-                far_m: near_m + distance::FAR_ERROR as f32 * size,
-                band_m: (distance::BAND as f32 - 0.1) * size,
-            };
-            (values, lambda, accuracy)
+        (_, ClosestPoints::GradientWalk) => {
+            table = by_gradient_walk(mesh, &grid, places);
+            Source::Table(&table)
+        }
+        (_, ClosestPoints::Exact) => {
+            exact = Exact::new(mesh, &grid, places);
+            if is_dense {
+                table = exact.all();
+                Source::Table(&table)
+            } else {
+                Source::Exact(&exact)
+            }
         }
     };
-    Ok(Voxelmap::new(grid, sigma, solid, accuracy, values.into())?)
+    let lattice = source.lattice(&grid);
+    let largest = lattice.largest(size);
+    let coding = match options.encoding {
+        Encoding::Layers => Coding::Integers(size),
+        Encoding::Distances(precision) => Coding::Integers(lambda(precision, largest)?),
+        Encoding::Floats => Coding::Floats,
+    };
+    // One truncated step, and the rounding of 32-bit coordinates.
+    let rounding = 8.0 * f64::from(f32::EPSILON * bounds.extents().length());
+    let stored = match coding {
+        Coding::Integers(lambda) => lambda + rounding,
+        Coding::Floats => rounding,
+    };
+    let interpolated = if is_dense {
+        0.0
+    } else {
+        size.max(2.0 * stored)
+    };
+    let store = match source {
+        Source::Table(table) if is_dense => Store::dense(grid.dims(), coding.all(table))?,
+        _ => {
+            let tolerance = Tolerance {
+                error: interpolated - rounding,
+                band: BAND * size,
+            };
+            sparse(&grid, &source, &lattice, coding, tolerance)?
+        }
+    };
+    let is_exact = matches!(options.closest_points, ClosestPoints::Exact);
+    let (near, far) = if is_exact && options.encoding != Encoding::Layers {
+        (stored, interpolated.max(stored))
+    } else {
+        // The centre of layer n is between (n - 1/2) s and √3 (n + 1/2) s from the surface.
+        let error = |layers: f64| (1.7321 * (layers + 0.5) - layers) * size + stored;
+        (
+            error(BAND),
+            error((largest / size).max(BAND)) + interpolated,
+        )
+    };
+    let accuracy = Accuracy {
+        near_m: near as f32,
+        far_m: far as f32,
+        band_m: ((BAND - 0.01) * size) as f32,
+    };
+    let sigma = match coding {
+        Coding::Integers(sigma) => sigma as f32,
+        Coding::Floats => 1.0,
+    };
+    Ok(Voxelmap::new(grid, sigma, solid, accuracy, store)?)
 }
 
-/// Eq. 1: distances as integers in steps of λ = 10^-p, truncated towards zero.
-fn truncated(penetrations: &[f32], precision: Option<i32>) -> Result<(Vec<i16>, f32), BuildError> {
-    let max_m = penetrations
-        .par_iter()
-        .map(|p| p.abs())
-        .reduce(|| 0.0, f32::max);
-    let most = f64::from(i16::MAX) / f64::from(max_m.max(1e-30));
+/// Eq. 1: λ = 10^-p, with as many decimal places as distances up to `largest` leave in 16 bits.
+fn lambda(precision: Option<i32>, largest: f64) -> Result<f64, BuildError> {
+    let most = f64::from(i16::MAX) / largest.max(1e-30);
     let fitting = most.log10().floor() as i32;
     let precision = precision.unwrap_or(fitting);
     if precision > fitting {
         return Err(BuildError::Precision {
             precision,
-            max_m,
+            max_m: largest as f32,
             fitting,
         });
     }
-    let lambda = 10.0_f64.powi(-precision);
-    let values = penetrations
-        .par_iter()
-        .map(|&p| (f64::from(p) / lambda) as i16)
-        .collect();
-    Ok((values, lambda as f32))
+    Ok(10.0_f64.powi(-precision))
 }

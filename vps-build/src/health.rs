@@ -120,14 +120,14 @@ impl Health {
 }
 
 /// Sets of vertices that hang together.
-struct UnionFind(Vec<u32>);
+pub(crate) struct UnionFind(Vec<u32>);
 
 impl UnionFind {
-    fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
 
-    fn root(&mut self, mut v: u32) -> u32 {
+    pub(crate) fn root(&mut self, mut v: u32) -> u32 {
         while self.0[v as usize] != v {
             let above = self.0[self.0[v as usize] as usize];
             self.0[v as usize] = above;
@@ -136,7 +136,7 @@ impl UnionFind {
         v
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);
     }

@@ -2,16 +2,16 @@
 //! and Lopes e Silva, 2014).
 //!
 //! ```
-//! use vps_build::{BuildOptions, Mesh, Resolution, build};
+//! use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
 //!
 //! let mesh = Mesh::cuboid([0.2, 0.1, 0.1])?;
 //! let options = BuildOptions {
 //!     resolution: Resolution::VoxelSize(0.01),
 //!     margin: 3,
-//!     points: 500,
+//!     points: PointCount::About(500),
 //!     ..BuildOptions::default()
 //! };
-//! let asset = build(&mesh, &options, &|_stage| ())?;
+//! let asset = build(&mesh, &options, &|_stage| ())?.asset;
 //! assert_eq!(asset.voxelmap.grid().dims(), [26, 16, 16]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -20,8 +20,11 @@
 //! |---|---|---|
 //! | mesh from a file | [`read_mesh`] | |
 //! | what is wrong with it | [`Health`] | |
-//! | surface voxels, fill, layers | `layers` | 2.1.1 |
-//! | distances | `distance` | 2.1.1 |
+//! | a solid from any mesh | `solid`, `winding` | |
+//! | surface voxels, inside, outside | `places` | 2.1.1 |
+//! | layers | `layers` | 2.1.1 |
+//! | closest points and distances | `bvh`, `distance` | 2.1.1 |
+//! | what may be interpolated | `sparse` | |
 //! | pointshell | `sample` | 2.1.2 |
 //! | clusters and their tree | `cluster` | 2.1.2 |
 //! | minimal enclosing balls | [`ball`] | 2.1.2 |
@@ -30,6 +33,7 @@
 
 pub mod ball;
 mod build;
+mod bvh;
 mod cluster;
 mod distance;
 mod file;
@@ -38,14 +42,22 @@ mod kdtree;
 mod layers;
 mod mass;
 mod mesh;
+mod places;
 mod read;
 mod sample;
 mod sat;
+mod solid;
+mod sparse;
 mod triangle;
+mod winding;
 
-pub use build::{BuildError, BuildOptions, Encoding, Resolution, Stage, build};
+pub use build::{
+    BuildError, BuildOptions, Built, ClosestPoints, DENSE_VOXELS, Density, Encoding, PointCount,
+    Resolution, Stage, build,
+};
 pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use health::Health;
 pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
 pub use read::{MeshFormat, ReadError, read_mesh};
+pub use solid::{Repairs, Sign};

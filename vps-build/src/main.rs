@@ -6,7 +6,8 @@ mod commands;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 
 use crate::commands::{build, export, inspect, sample};
 
@@ -28,6 +29,11 @@ enum Command {
     Export(export::ExportArgs),
     /// Penetration, gradient and error bound at the points of a CSV file
     Sample(sample::SampleArgs),
+    /// A script that completes this command in a shell
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
 }
 
 fn main() -> ExitCode {
@@ -37,6 +43,11 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Sample(args) => sample::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Completions { shell } => {
+            let mut out = std::io::stdout();
+            clap_complete::generate(shell, &mut Cli::command(), "vps-build", &mut out);
+            Ok(())
+        }
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,8 +1,9 @@
 //! Mass properties of the solid within a closed mesh.
 
 use glamx::{DMat3, DVec3};
-use vps_core::MassProperties;
+use vps_core::{Grid, MassProperties};
 
+use crate::places::Places;
 use crate::{BuildError, Mesh};
 
 /// Volume, centre and inertia at density one, exact for a closed mesh that faces outwards: sums
@@ -12,9 +13,13 @@ use crate::{BuildError, Mesh};
 /// When the mesh is open or has no positive volume.
 pub fn mass_properties(mesh: &Mesh) -> Result<MassProperties, BuildError> {
     match mesh.open_edges() {
-        0 => {}
-        open => return Err(BuildError::Open(open)),
+        0 => mass_of_mesh(mesh),
+        open => Err(BuildError::Open(open)),
     }
+}
+
+/// The same for a mesh that is known to be closed.
+pub(crate) fn mass_of_mesh(mesh: &Mesh) -> Result<MassProperties, BuildError> {
     let (low, high) = mesh.bounds();
     let origin = low.midpoint(high);
     let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);
@@ -29,6 +34,32 @@ pub fn mass_properties(mesh: &Mesh) -> Result<MassProperties, BuildError> {
         let all = products[0] + products[1] + products[2] + products[3];
         covariance += all * (six_volumes / 120.0);
     }
+    properties(origin, volume, moment, covariance)
+}
+
+/// Those of the voxels of a solid, for a mesh whose parts overlap.
+pub(crate) fn mass_of_voxels(places: &Places, grid: &Grid) -> Result<MassProperties, BuildError> {
+    let bounds = grid.bounds();
+    let origin = bounds.center().as_dvec3();
+    let size = f64::from(grid.voxel_size());
+    let voxel = size.powi(3);
+    let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    for center in places.inside_centers() {
+        let at = center.as_dvec3() - origin;
+        volume += voxel;
+        moment += at * voxel;
+        covariance += (outer(at, at) + DMat3::IDENTITY * (size * size / 12.0)) * voxel;
+    }
+    properties(origin, volume, moment, covariance)
+}
+
+/// From the volume, ∫ p and ∫ p pᵀ about `origin`.
+fn properties(
+    origin: DVec3,
+    volume: f64,
+    moment: DVec3,
+    mut covariance: DMat3,
+) -> Result<MassProperties, BuildError> {
     let center = moment / volume;
     covariance -= outer(center, center) * volume;
     let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;

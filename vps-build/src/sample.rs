@@ -5,9 +5,9 @@ use glamx::DVec3;
 use rustc_hash::FxHashMap;
 use vps_core::{DistanceField, Vec3, Voxelmap};
 
-use crate::Mesh;
-use crate::layers::for_each_overlapped;
+use crate::places::for_each_overlapped;
 use crate::triangle::closest_point;
+use crate::{Mesh, PointCount};
 
 /// How many voxels of the sampling grid two points are apart: √2, as the paper suggests.
 const ALPHA: f64 = std::f64::consts::SQRT_2;
@@ -29,11 +29,28 @@ pub(crate) struct Samples {
     pub(crate) normals: Vec<Vec3>,
 }
 
-/// Samples the mesh with about `count` points, with normals from the field.
-pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
+/// What part of its spacing squared a point covers.
+const COVERED: f64 = 0.7;
+
+/// About how many points there are on so much area.
+pub(crate) fn about_count(area: f64, spacing: f64) -> f64 {
+    area / (COVERED * spacing * spacing)
+}
+
+/// Samples the mesh, with normals from the field.
+pub(crate) fn sample(mesh: &Mesh, count: PointCount, map: &Voxelmap<'_>) -> Samples {
+    let positions = match count {
+        PointCount::Spacing(spacing) => spread(mesh, spacing).points,
+        PointCount::About(count) => about(mesh, count),
+    };
+    let normals = inward_normals(mesh, &positions, map);
+    Samples { positions, normals }
+}
+
+/// As close to `count` points as some spacing gives.
+fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
     let target = f64::from(count);
-    // Points spread like this cover about 0.7 of their spacing squared each.
-    let mut spacing = (mesh.area() / (0.7 * target)).sqrt();
+    let mut spacing = (mesh.area() / (COVERED * target)).sqrt();
     // Spacings that gave too many points and too few; the truth lies between.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
     let mut best: Option<(f64, Vec<DVec3>)> = None;
@@ -65,9 +82,7 @@ pub(crate) fn sample(mesh: &Mesh, count: u32, map: &Voxelmap<'_>) -> Samples {
             spacing = f64::midpoint(too_small, too_large);
         }
     }
-    let (_, positions) = best.expect("at least one round");
-    let normals = inward_normals(mesh, &positions, map);
-    Samples { positions, normals }
+    best.expect("at least one round").1
 }
 
 /// Points no closer than `spacing` to each other, but for those on the two sides of a thin wall;
@@ -81,7 +96,7 @@ fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
         let [a, b, c] = triangle;
         let normal = (b - a).cross(c - a).normalize_or_zero();
         for_each_overlapped(triangle, origin, size, |_, center| {
-            kept.offer(closest_point(triangle, center).0, normal);
+            kept.offer(closest_point(triangle, center), normal);
         });
     }
     kept
@@ -177,7 +192,7 @@ fn inward_normals(mesh: &Mesh, positions: &[DVec3], map: &Voxelmap<'_>) -> Vec<V
             return inward;
         }
         let closest = (0..mesh.triangles().len()).min_by(|&a, &b| {
-            let distance = |t: usize| closest_point(mesh.corners(t), p).0.distance_squared(p);
+            let distance = |t: usize| closest_point(mesh.corners(t), p).distance_squared(p);
             distance(a).total_cmp(&distance(b))
         });
         let [a, b, c] = mesh.corners(closest.expect("a mesh has triangles"));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use rapier3d::math::Pose;
-use vps_build::{BuildOptions, Mesh, Resolution, build};
+use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
 use vps_compare::{
     CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Scene, Trimesh, Vps, VpsGround,
     oracle::PlaneOracle,
@@ -19,11 +19,13 @@ fn all_find_a_ball_on_a_box() {
     };
     let options = |points| BuildOptions {
         resolution: Resolution::VoxelSize(0.01),
-        points,
+        points: PointCount::About(points),
         ..BuildOptions::default()
     };
     let assets = |mesh: &Mesh, options: &BuildOptions| {
-        let asset = build(mesh, options, &|_| ()).map_err(|e| e.to_string())?;
+        let asset = build(mesh, options, &|_| ())
+            .map_err(|e| e.to_string())?
+            .asset;
         Ok(Arc::new(asset))
     };
     let vps = |ground| Vps {

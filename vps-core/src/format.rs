@@ -6,20 +6,24 @@
 //! | bytes | what |
 //! |---|---|
 //! | 0..8 | the characters `VPSASSET` |
-//! | 8..12 | version, [`VPS_VERSION`] |
-//! | 12..16 | number of levels + 1 |
-//! | 16..24 | XXH3-64 of all bytes from 64 on |
-//! | 24..32 | number of voxels |
+//! | 8..16 | version, [`VPS_VERSION`] |
+//! | 16..24 | XXH3-64 of all bytes from 24 on |
+//! | 24..32 | number of values of the voxelmap |
 //! | 32..40 | number of points |
 //! | 40..48 | number of clusters |
-//! | 48..64 | zeros |
+//! | 48..52 | number of groups of cells, 0 for a dense voxelmap |
+//! | 52..56 | number of refined cells |
+//! | 56..60 | bytes of a value: 2 (i16) or 4 (f32) |
+//! | 60..64 | number of levels + 1 |
 //!
 //! Sections in order:
 //!
 //! | section | an element | bytes |
 //! |---|---|---|
 //! | parameters | see below | 112 |
-//! | voxel values v, x fastest, then y, then z | i16 | 2 |
+//! | values v of the voxelmap, in the order of its [`Store`] | i16 or f32 | 2 or 4 |
+//! | groups of cells | a [`CellGroup`]: bits u64, refined before u32, zero u32 | 16 |
+//! | refined cells | a [`RefinedCell`]: bits u64, first brick u32, zero u32 | 16 |
 //! | points in metres, in the order of the leaves | 3 x f32 | 12 |
 //! | unit inward normals | 3 x f32 | 12 |
 //! | clusters, level by level from the top | a [`Cluster`]: centre 3 x f32, radius f32, first child, number of children, parent point (u32 each) | 28 |
@@ -42,13 +46,14 @@ use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
 use xxhash_rust::xxh3::xxh3_64;
 
+use crate::store::{CellGroup, RefinedCell};
 use crate::{
-    Aabb, Accuracy, Asset, Cluster, Grid, GridError, MassProperties, PointSphereTree, TreeError,
-    Voxelmap, VoxelmapError,
+    Aabb, Accuracy, Asset, Cluster, Grid, GridError, MassProperties, PointSphereTree, Store,
+    TreeError, Values, Voxelmap, VoxelmapError,
 };
 
 /// Version of the `.vps` file this library reads and writes.
-pub const VPS_VERSION: u32 = 1;
+pub const VPS_VERSION: u64 = 2;
 
 const MAGIC: [u8; 8] = *b"VPSASSET";
 const ALIGN: usize = 64;
@@ -58,14 +63,19 @@ const ALIGN: usize = 64;
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Header {
     magic: [u8; 8],
-    version: u32,
-    level_starts: u32,
+    version: u64,
     checksum: u64,
-    voxels: u64,
+    values: u64,
     points: u64,
     clusters: u64,
-    zeros: [u64; 2],
+    groups: u32,
+    cells: u32,
+    value_bytes: u32,
+    level_starts: u32,
 }
+
+/// From where on bytes are checked.
+const CHECKED: usize = 24;
 
 /// All of an asset that has a fixed size.
 #[repr(C)]
@@ -92,7 +102,7 @@ pub enum FormatError {
     Foreign,
     /// A file of another version of this library.
     #[error("a .vps file of version {0}, but this library reads {VPS_VERSION}: build it again")]
-    Version(u32),
+    Version(u64),
     /// The file ends before its data, or goes on behind it.
     #[error("the file has {found} bytes, but its header speaks of {expected}")]
     Length {
@@ -107,6 +117,9 @@ pub enum FormatError {
     /// The bytes do not start at a multiple of 8.
     #[error("the bytes must lie at an address that is a multiple of 8")]
     Alignment,
+    /// Values of a size that does not exist.
+    #[error("in the voxelmap: values of {0} bytes")]
+    ValueBytes(u32),
     /// The grid is none.
     #[error("in the voxelmap: {0}")]
     Grid(#[from] GridError),
@@ -120,7 +133,7 @@ pub enum FormatError {
 
 /// Where the sections of a file lie.
 struct Layout {
-    starts: [usize; 6],
+    starts: [usize; 8],
     end: usize,
 }
 
@@ -133,13 +146,15 @@ impl Layout {
         };
         let sizes = [
             size_of::<Parameters>(),
-            size(header.voxels, size_of::<i16>())?,
+            size(header.values, header.value_bytes as usize)?,
+            size(u64::from(header.groups), size_of::<CellGroup>())?,
+            size(u64::from(header.cells), size_of::<RefinedCell>())?,
             size(header.points, size_of::<[f32; 3]>())?,
             size(header.points, size_of::<[f32; 3]>())?,
             size(header.clusters, size_of::<Cluster>())?,
             size(u64::from(header.level_starts), size_of::<u32>())?,
         ];
-        let mut starts = [0; 6];
+        let mut starts = [0; 8];
         let mut end = size_of::<Header>();
         for (start, size) in starts.iter_mut().zip(sizes) {
             *start = end.checked_next_multiple_of(ALIGN)?;
@@ -176,17 +191,39 @@ impl<'a> Asset<'a> {
         if bytes.len() != layout.end {
             return Err(wrong_length(layout.end));
         }
-        if xxh3_64(&bytes[size_of::<Header>()..]) != header.checksum {
+        if xxh3_64(&bytes[CHECKED..]) != header.checksum {
             return Err(FormatError::Checksum);
         }
         fn cast<T: Pod>(bytes: &[u8], start: usize, count: usize) -> Result<&[T], FormatError> {
             bytemuck::try_cast_slice(&bytes[start..start + count * size_of::<T>()])
                 .map_err(|_| FormatError::Alignment)
         }
-        let [parameters, values, points, normals, clusters, levels] = layout.starts;
+        let [
+            parameters,
+            values,
+            groups,
+            cells,
+            points,
+            normals,
+            clusters,
+            levels,
+        ] = layout.starts;
         let parameters: &[Parameters] = cast(bytes, parameters, 1)?;
         let p = parameters[0];
         let point_count = header.points as usize;
+        let count = header.values as usize;
+        let values = match header.value_bytes {
+            2 => Values::Integers(cast(bytes, values, count)?.into()),
+            4 => Values::Floats(cast(bytes, values, count)?.into()),
+            other => return Err(FormatError::ValueBytes(other)),
+        };
+        let store = if header.groups == 0 {
+            Store::dense(p.dims, values)?
+        } else {
+            let groups = cast(bytes, groups, header.groups as usize)?.into();
+            let cells = cast(bytes, cells, header.cells as usize)?.into();
+            Store::sparse(p.dims, groups, cells, values)?
+        };
         Ok(Self {
             voxelmap: Voxelmap::new(
                 Grid::new(Vec3::from_array(p.origin), p.voxel_size, p.dims)?,
@@ -200,7 +237,7 @@ impl<'a> Asset<'a> {
                     far_m: p.far_m,
                     band_m: p.band_m,
                 },
-                cast(bytes, values, header.voxels as usize)?.into(),
+                store,
             )?,
             tree: PointSphereTree::new(
                 cast(bytes, points, point_count)?.into(),
@@ -219,15 +256,22 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
     use bytemuck::{bytes_of, cast_slice};
 
     let (map, tree) = (&asset.voxelmap, &asset.tree);
+    let values = map.store().values();
+    let (groups, cells) = map.store().cells();
     let mut header = Header {
         magic: MAGIC,
         version: VPS_VERSION,
-        level_starts: tree.level_starts().len() as u32,
         checksum: 0,
-        voxels: map.values().len() as u64,
+        values: values.len() as u64,
         points: tree.point_count() as u64,
         clusters: tree.clusters().len() as u64,
-        zeros: [0; 2],
+        groups: groups.len() as u32,
+        cells: cells.len() as u32,
+        value_bytes: match values {
+            Values::Integers(_) => 2,
+            Values::Floats(_) => 4,
+        },
+        level_starts: tree.level_starts().len() as u32,
     };
     let accuracy = map.accuracy();
     let parameters = Parameters {
@@ -243,9 +287,11 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         mass: asset.mass,
         zero: 0,
     };
-    let sections: [&[u8]; 6] = [
+    let sections: [&[u8]; 8] = [
         bytes_of(&parameters),
-        cast_slice(map.values()),
+        values.bytes(),
+        cast_slice(groups),
+        cast_slice(cells),
         cast_slice(tree.points()),
         cast_slice(tree.normals()),
         cast_slice(tree.clusters()),
@@ -256,7 +302,8 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         bytes.resize(bytes.len().next_multiple_of(ALIGN), 0);
         bytes.extend_from_slice(section);
     }
-    header.checksum = xxh3_64(&bytes[size_of::<Header>()..]);
+    bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
+    header.checksum = xxh3_64(&bytes[CHECKED..]);
     bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
     bytes
 }

@@ -56,6 +56,7 @@ mod manifold;
 mod query;
 mod shapes;
 mod storage;
+pub mod store;
 mod tree;
 mod voxelmap;
 
@@ -71,5 +72,6 @@ pub use manifold::ContactManifold;
 pub use query::{Contact, Query, Wrench};
 pub use shapes::{Ball, Cuboid, HalfSpace};
 pub use storage::Storage;
+pub use store::{Store, Values};
 pub use tree::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
 pub use voxelmap::{Accuracy, LocalPenetration, Trilinear, Voxelmap, VoxelmapError};

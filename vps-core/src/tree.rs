@@ -192,6 +192,15 @@ impl<'a> PointSphereTree<'a> {
         first as usize..last as usize + 1
     }
 
+    /// What points, normals, clusters and levels take in memory, and in a file but for its
+    /// alignment.
+    pub fn byte_len(&self) -> usize {
+        size_of_val(&*self.points)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.clusters)
+            + size_of_val(&*self.level_starts)
+    }
+
     /// Number of points N_P.
     pub fn point_count(&self) -> usize {
         self.points.len()

@@ -1,6 +1,6 @@
 use glamx::Vec3;
 
-use crate::{Aabb, DistanceField, Grid, Storage};
+use crate::{Aabb, DistanceField, Grid, Store};
 
 /// Half the diagonal of a voxel, in voxels.
 const HALF_DIAGONAL: f32 = 0.866_025_4;
@@ -23,32 +23,46 @@ pub struct Accuracy {
     pub band_m: f32,
 }
 
-/// A signed distance field on a grid: one integer v a voxel, times σ, is the penetration of the
+/// A signed distance field on a grid: one value v a voxel, times σ, is the penetration of the
 /// voxel's centre (section 2.1.1).
 ///
-/// With σ = s, the voxel size, the integers are layers; with σ = λ = 10^-p they are distances
-/// truncated to the precision p (eq. 1). A map is sampled through one of its views, which differ
-/// in what they make of a point between the centres: [`local`](Self::local) and
-/// [`trilinear`](Self::trilinear).
+/// With σ = s, the voxel size, the values are layers; with σ = λ = 10^-p they are distances
+/// truncated to the precision p (eq. 1); with σ = 1 m they are floating-point distances. A map is
+/// sampled through one of its views, which differ in what they make of a point between the
+/// centres: [`local`](Self::local) and [`trilinear`](Self::trilinear).
 #[derive(Clone, Debug)]
 pub struct Voxelmap<'a> {
     grid: Grid,
     sigma: f32,
     solid: Aabb,
     accuracy: Accuracy,
-    values: Storage<'a, i16>,
+    store: Store<'a>,
 }
 
 /// Why a [`Voxelmap`] was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VoxelmapError {
-    /// One value a voxel is needed.
-    #[error("{values} values for {voxels} voxels")]
+    /// Each voxel of a dense store needs a value, a sparse one what its cells say.
+    #[error("{values} values in a store that needs {expected}")]
     ValueCount {
         /// Values given.
         values: usize,
-        /// Voxels of the grid.
-        voxels: usize,
+        /// Values needed.
+        expected: usize,
+    },
+    /// The cells of a sparse store are not counted right.
+    #[error("the cells of the sparse store do not fit together")]
+    Cells,
+    /// A value is no number.
+    #[error("a stored distance is not finite")]
+    NotFinite,
+    /// The store is for another grid.
+    #[error("values for {store:?} voxels on a grid of {grid:?}")]
+    Dims {
+        /// Voxels along each axis of the store.
+        store: [u32; 3],
+        /// And of the grid.
+        grid: [u32; 3],
     },
     /// σ means nothing.
     #[error("the value of one step must be positive and finite, not {0} m")]
@@ -62,8 +76,8 @@ pub enum VoxelmapError {
 }
 
 impl<'a> Voxelmap<'a> {
-    /// A map over `grid` with one value a voxel (x fastest, then y, then z), worth `sigma` metres
-    /// each; `solid` is a box around the mesh the map was made from.
+    /// A map over `grid` with the values of `store`, each worth `sigma` metres; `solid` is a box
+    /// around the mesh the map was made from.
     ///
     /// # Errors
     /// When the parts do not fit together.
@@ -72,12 +86,12 @@ impl<'a> Voxelmap<'a> {
         sigma: f32,
         solid: Aabb,
         accuracy: Accuracy,
-        values: Storage<'a, i16>,
+        store: Store<'a>,
     ) -> Result<Self, VoxelmapError> {
-        if values.len() != grid.voxel_count() {
-            return Err(VoxelmapError::ValueCount {
-                values: values.len(),
-                voxels: grid.voxel_count(),
+        if store.dims() != grid.dims() {
+            return Err(VoxelmapError::Dims {
+                store: store.dims(),
+                grid: grid.dims(),
             });
         }
         if !(sigma > 0.0 && sigma.is_finite()) {
@@ -104,7 +118,7 @@ impl<'a> Voxelmap<'a> {
             sigma,
             solid,
             accuracy,
-            values,
+            store,
         })
     }
 
@@ -128,14 +142,14 @@ impl<'a> Voxelmap<'a> {
         self.accuracy
     }
 
-    /// All values v, x fastest, then y, then z; positive inside.
-    pub fn values(&self) -> &[i16] {
-        &self.values
+    /// Where the values v are; positive inside.
+    pub fn store(&self) -> &Store<'a> {
+        &self.store
     }
 
     /// V of a voxel's centre in metres.
     pub fn center_penetration(&self, voxel: [u32; 3]) -> f32 {
-        f32::from(self.values[self.grid.index(voxel)]) * self.sigma
+        self.store.value(voxel) * self.sigma
     }
 
     /// The map sampled as in eq. 4: the value of the voxel plus the depth within the voxel along
@@ -158,7 +172,7 @@ impl<'a> Voxelmap<'a> {
             sigma: self.sigma,
             solid: self.solid,
             accuracy: self.accuracy,
-            values: self.values.into_owned(),
+            store: self.store.into_owned(),
         }
     }
 
@@ -276,21 +290,8 @@ impl DistanceField for Trilinear<'_> {
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
         let map = self.0;
         let inside = map.grid.center_bounds().clamp(point);
-        let ([x, y, z], t) = map.grid.cell_at(inside);
-        let [nx, ny, nz] = map.grid.dims();
-        let next = |c: u32, n: u32| (c + 1).min(n - 1);
-        let (x1, y1, z1) = (next(x, nx), next(y, ny), next(z, nz));
-        let row = |y, z| {
-            let a = map.center_penetration([x, y, z]);
-            let b = map.center_penetration([x1, y, z]);
-            a + (b - a) * t.x
-        };
-        let plane = |z| {
-            let (a, b) = (row(y, z), row(y1, z));
-            a + (b - a) * t.y
-        };
-        let (a, b) = (plane(z), plane(z1));
-        a + (b - a) * t.z - point.distance(inside)
+        let (corner, t) = map.grid.cell_at(inside);
+        map.store.interpolated(corner, t) * map.sigma - point.distance(inside)
     }
 
     fn inward_direction(&self, point: Vec3) -> Vec3 {

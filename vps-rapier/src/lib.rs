@@ -12,7 +12,7 @@
 //! use vps_rapier::{VpsShape, narrow_phase};
 //!
 //! # let mesh = Mesh::icosphere(0.5, 3)?;
-//! let asset = Arc::new(build(&mesh, &BuildOptions::default(), &|_| ())?);
+//! let asset = Arc::new(build(&mesh, &BuildOptions::default(), &|_| ())?.asset);
 //! let mut world = PhysicsWorld { narrow_phase: narrow_phase(), ..PhysicsWorld::default() };
 //! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::cuboid(5.0, 0.1, 5.0));
 //! let above = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));

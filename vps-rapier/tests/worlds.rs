@@ -6,7 +6,7 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
 use rapier3d::parry::utils::Array2;
 use rapier3d::prelude::*;
-use vps_build::{BuildOptions, Mesh, Resolution, build};
+use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
 use vps_core::conformance::check_ball;
 use vps_core::{Asset, DistanceField};
 use vps_rapier::{Role, Sampling, ShapeField, VpsDispatcher, VpsShape, narrow_phase};
@@ -14,10 +14,10 @@ use vps_rapier::{Role, Sampling, ShapeField, VpsDispatcher, VpsShape, narrow_pha
 fn asset(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
     let options = BuildOptions {
         resolution: Resolution::VoxelsAlongLongest(40),
-        points,
+        points: PointCount::About(points),
         ..BuildOptions::default()
     };
-    Arc::new(build(mesh, &options, &|_| ()).unwrap())
+    Arc::new(build(mesh, &options, &|_| ()).unwrap().asset)
 }
 
 /// A thick L: not convex, and its hull would stand differently.

@@ -3,15 +3,20 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use clap::Args;
-use indicatif::ProgressBar;
-use vps_build::{BuildOptions, Encoding, Resolution, Stage, build, read_mesh, write_asset};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
+use vps_build::{
+    BuildOptions, Built, ClosestPoints, Density, Encoding, PointCount, Repairs, Resolution, Sign,
+    Stage, build, read_mesh, write_asset,
+};
+use vps_core::encode;
 
 use super::Error;
 
 #[derive(Args)]
 pub(crate) struct BuildArgs {
-    /// The mesh, closed and facing outwards: .obj, .ply, .stl or .off
+    /// The mesh: .obj, .ply, .stl or .off
     mesh: PathBuf,
     /// The object of an OBJ file, in place of all
     #[arg(long)]
@@ -23,7 +28,7 @@ pub(crate) struct BuildArgs {
     #[arg(long, default_value_t = 1.0)]
     scale: f64,
     /// Edge of a voxel in metres, after scaling
-    #[arg(long, conflicts_with = "voxels")]
+    #[arg(long, conflicts_with = "voxels", value_name = "METRES")]
     voxel_size: Option<f64>,
     /// Voxels along the longest side
     #[arg(long, default_value_t = 100)]
@@ -31,71 +36,257 @@ pub(crate) struct BuildArgs {
     /// Outer layers of voxels around the mesh
     #[arg(long, default_value_t = 4)]
     margin: u32,
-    /// About how many points the pointshell gets
+    /// How many points the pointshell gets, to within 2 %
     #[arg(long, default_value_t = 10_000)]
     points: u32,
+    /// Distance between points in metres, in place of their number
+    #[arg(long, conflicts_with = "points", value_name = "METRES")]
+    spacing: Option<f64>,
     /// Children of a cluster, K
     #[arg(short = 'k', long, default_value_t = 4)]
     branching: u32,
-    /// Store layers in place of distances
-    #[arg(long, conflicts_with = "precision")]
-    layers: bool,
-    /// Decimal places a distance in metres keeps [default: as many as fit]
+    /// What the voxels hold
+    #[arg(long, value_enum, default_value_t = EncodingName::Distances)]
+    encoding: EncodingName,
+    /// Decimal places a distance in metres keeps [default: as many as fit 16 bits]
     #[arg(long)]
     precision: Option<i32>,
+    /// How the mesh point closest to a voxel is found
+    #[arg(long, value_enum, default_value_t = ClosestName::Exact)]
+    closest: ClosestName,
+    /// Whether all voxels are stored
+    #[arg(long, value_enum, default_value_t = StoreName::Auto)]
+    store: StoreName,
+    /// Which side of a face is the inside
+    #[arg(long, value_enum, default_value_t = SignName::Winding)]
+    sign: SignName,
     /// Where the clustering starts
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Most memory the voxels may take while building, in MiB
-    #[arg(long, default_value_t = 4096)]
+    /// Most memory voxels and points may take while building, in MiB
+    #[arg(long, default_value_t = 4096, value_name = "MIB")]
     memory_limit: u64,
+    /// Threads to work with; the asset does not depend on it [default: one a core]
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+    /// Say what was built for machines
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EncodingName {
+    /// 16-bit layers, a voxel size apart
+    Layers,
+    /// 16-bit distances in steps of 10^-precision metres
+    Distances,
+    /// 32-bit floating-point distances
+    Floats,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ClosestName {
+    /// Among all triangles
+    Exact,
+    /// As in the paper, along the gradient of the layers
+    Walk,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum StoreName {
+    /// Dense for small maps, else sparse
+    Auto,
+    /// One value a voxel
+    Dense,
+    /// Only what cannot be interpolated to within a voxel size
+    Sparse,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SignName {
+    /// By winding numbers, once neighbours agree and holes are closed
+    Winding,
+    /// What cannot be reached from outside is inside, however faces are turned
+    Fill,
+}
+
+impl BuildArgs {
+    fn options(&self) -> BuildOptions {
+        BuildOptions {
+            resolution: match self.voxel_size {
+                Some(size) => Resolution::VoxelSize(size),
+                None => Resolution::VoxelsAlongLongest(self.voxels),
+            },
+            margin: self.margin,
+            points: match self.spacing {
+                Some(spacing) => PointCount::Spacing(spacing),
+                None => PointCount::About(self.points),
+            },
+            branching: self.branching,
+            encoding: match self.encoding {
+                EncodingName::Layers => Encoding::Layers,
+                EncodingName::Distances => Encoding::Distances(self.precision),
+                EncodingName::Floats => Encoding::Floats,
+            },
+            closest_points: match self.closest {
+                ClosestName::Exact => ClosestPoints::Exact,
+                ClosestName::Walk => ClosestPoints::GradientWalk,
+            },
+            density: match self.store {
+                StoreName::Auto => Density::Auto,
+                StoreName::Dense => Density::Dense,
+                StoreName::Sparse => Density::Sparse,
+            },
+            sign: match self.sign {
+                SignName::Winding => Sign::Winding,
+                SignName::Fill => Sign::Fill,
+            },
+            seed: self.seed,
+            memory_limit: self.memory_limit << 20,
+        }
+    }
 }
 
 pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
+    if args.precision.is_some() && !matches!(args.encoding, EncodingName::Distances) {
+        return Err("--precision is for --encoding distances".into());
+    }
+    let threads = args.threads.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
     let start = Instant::now();
-    // Draws nothing when standard error is not a terminal.
-    let progress = ProgressBar::new_spinner();
-    progress.enable_steady_tick(Duration::from_millis(100));
-    progress.set_message("reading the mesh");
+    let progress = progress(args.quiet || args.json);
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", args.mesh.display());
     let mesh = read_mesh(&args.mesh, args.object.as_deref())?;
     let mesh = mesh.scaled(args.scale).map_err(|e| named(&e))?;
-    let options = BuildOptions {
-        resolution: match args.voxel_size {
-            Some(size) => Resolution::VoxelSize(size),
-            None => Resolution::VoxelsAlongLongest(args.voxels),
-        },
-        margin: args.margin,
-        points: args.points,
-        branching: args.branching,
-        encoding: if args.layers {
-            Encoding::Layers
-        } else {
-            Encoding::Distances(args.precision)
-        },
-        seed: args.seed,
-        memory_limit: args.memory_limit << 20,
-    };
-    let asset = build(&mesh, &options, &|stage| {
+    let on_stage = |stage| {
+        progress.inc(1);
         progress.set_message(match stage {
             Stage::Voxels => "filling voxels",
             Stage::Distances => "measuring distances",
             Stage::Points => "spreading points",
             Stage::Tree => "growing the tree",
         });
-    })
-    .map_err(|e| named(&e))?;
-    write_asset(&args.output, &asset)?;
+    };
+    // The pool's threads do not share what shows the progress.
+    let built = pool.install(|| build(&mesh, &args.options(), &on_stage));
+    let built = built.map_err(|e| named(&e))?;
+    write_asset(&args.output, &built.asset)?;
     progress.finish_and_clear();
-    let [x, y, z] = asset.voxelmap.grid().dims();
-    println!(
-        "{}: {} triangles, {x} x {y} x {z} voxels of {:.6} m, {} points, {} levels, {:.2} s",
-        args.output.display(),
-        mesh.triangles().len(),
-        asset.voxelmap.grid().voxel_size(),
-        asset.tree.point_count(),
-        asset.tree.level_count(),
-        start.elapsed().as_secs_f64(),
-    );
+    let seconds = start.elapsed().as_secs_f64();
+    if args.json {
+        println!(
+            "{}",
+            for_machines(args, mesh.triangles().len(), &built, seconds)
+        );
+    } else if !args.quiet {
+        print!(
+            "{}",
+            for_people(args, mesh.triangles().len(), &built, seconds)
+        );
+    }
     Ok(())
+}
+
+/// A bar with a step for every stage; draws nothing when standard error is not a terminal.
+fn progress(hidden: bool) -> ProgressBar {
+    let progress = ProgressBar::new(5);
+    if hidden {
+        progress.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    if let Ok(style) = ProgressStyle::with_template("{spinner} [{bar:20}] {msg} ({elapsed})") {
+        progress.set_style(style);
+    }
+    progress.enable_steady_tick(Duration::from_millis(100));
+    progress.set_message("reading the mesh");
+    progress
+}
+
+fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -> String {
+    let Built { asset, repairs } = built;
+    let (map, tree) = (&asset.voxelmap, &asset.tree);
+    let [x, y, z] = map.grid().dims();
+    let kib = |bytes: usize| bytes.div_ceil(1024);
+    format!(
+        "{}: {triangles} triangles, {x} x {y} x {z} voxels of {:.6} m in {} KiB, {} points and {} \
+         levels in {} KiB, {seconds:.2} s\nsign: {}\n",
+        args.output.display(),
+        map.grid().voxel_size(),
+        kib(map.store().byte_len()),
+        tree.point_count(),
+        tree.level_count(),
+        kib(tree.byte_len()),
+        sign(args.sign, repairs),
+    )
+}
+
+/// How the inside was found, in words.
+fn sign(name: SignName, repairs: &Repairs) -> String {
+    let way = match name {
+        SignName::Winding if repairs.is_none() => return "the mesh is watertight".into(),
+        SignName::Winding => "by winding numbers",
+        SignName::Fill => "by what cannot be reached from outside",
+    };
+    let Repairs {
+        removed_faces,
+        turned_faces,
+        closed_holes,
+        added_faces,
+        hidden_faces,
+    } = *repairs;
+    let mut done = Vec::new();
+    let mut tell = |count: usize, what: &str| {
+        if count > 0 {
+            let plural = if count == 1 { "" } else { "s" };
+            done.push(
+                what.replace("{}", &count.to_string())
+                    .replace("(s)", plural),
+            );
+        }
+    };
+    tell(removed_faces, "{} double or degenerate face(s) removed");
+    tell(turned_faces, "{} face(s) turned");
+    tell(
+        closed_holes,
+        &format!("{{}} hole(s) closed with {added_faces} faces"),
+    );
+    tell(hidden_faces, "{} face(s) within the solid removed");
+    if done.is_empty() {
+        return way.into();
+    }
+    format!("{way}, after repairs: {}", done.join(", "))
+}
+
+fn for_machines(
+    args: &BuildArgs,
+    triangles: usize,
+    built: &Built,
+    seconds: f64,
+) -> serde_json::Value {
+    let Built { asset, repairs } = built;
+    let (map, tree) = (&asset.voxelmap, &asset.tree);
+    json!({
+        "file": args.output,
+        "file_bytes": encode(asset).len(),
+        "triangles": triangles,
+        "voxels": map.grid().dims(),
+        "voxel_size_m": map.grid().voxel_size(),
+        "sigma_m": map.sigma(),
+        "dense": map.store().is_dense(),
+        "map_bytes": map.store().byte_len(),
+        "points": tree.point_count(),
+        "levels": tree.level_count(),
+        "tree_bytes": tree.byte_len(),
+        "watertight": repairs.is_none(),
+        "removed_faces": repairs.removed_faces,
+        "turned_faces": repairs.turned_faces,
+        "closed_holes": repairs.closed_holes,
+        "added_faces": repairs.added_faces,
+        "hidden_faces": repairs.hidden_faces,
+        "seconds": seconds,
+    })
 }

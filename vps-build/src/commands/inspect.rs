@@ -145,13 +145,18 @@ fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
             json!(accuracy.band_m),
             "how far close to the surface reaches",
         ),
-        ("map_bytes", json!(2 * map.values().len()), ""),
+        (
+            "dense",
+            json!(map.store().is_dense()),
+            "whether every voxel is stored",
+        ),
+        ("map_bytes", json!(map.store().byte_len()), ""),
         ("points", json!(tree.point_count()), ""),
         ("levels", json!(tree.level_count()), ""),
         ("clusters", json!(clusters), "of each level"),
         (
             "tree_bytes",
-            json!(24 * tree.point_count() + size_of_val(tree.clusters())),
+            json!(tree.byte_len()),
             "points, normals and clusters",
         ),
         (

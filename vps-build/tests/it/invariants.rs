@@ -3,7 +3,7 @@
 use crate::support::{asset, bumpy_mesh, direction, encoding, exact_penetration, pose, vector};
 use glamx::DVec3;
 use proptest::prelude::*;
-use vps_build::{BuildOptions, Encoding, Mesh, Resolution, build};
+use vps_build::{BuildOptions, Encoding, Mesh, PointCount, Resolution, build};
 use vps_core::conformance::check_ball;
 use vps_core::{
     Asset, Ball, Contact, Cuboid, DistanceField, HalfSpace, Pose3, Query, Vec3, Voxelmap, encode,
@@ -99,12 +99,12 @@ proptest! {
     ) {
         let options = BuildOptions {
             resolution: Resolution::VoxelsAlongLongest(12),
-            points,
+            points: PointCount::About(points),
             branching,
             seed,
             ..BuildOptions::default()
         };
-        let tree = build(&mesh, &options, &|_| ()).unwrap().tree;
+        let tree = build(&mesh, &options, &|_| ()).unwrap().asset.tree;
         let mut leaves_of = vec![0; tree.point_count()];
         for level in 1..=tree.level_count() {
             let mut seen = vec![0; tree.point_count()];
@@ -346,10 +346,10 @@ fn both_sides_of_a_thin_wall_are_sampled() {
     let mesh = Mesh::cuboid([1.0, 0.01, 1.0]).unwrap();
     let options = BuildOptions {
         resolution: Resolution::VoxelSize(0.005),
-        points: 500,
+        points: PointCount::About(500),
         ..BuildOptions::default()
     };
-    let tree = build(&mesh, &options, &|_| ()).unwrap().tree;
+    let tree = build(&mesh, &options, &|_| ()).unwrap().asset.tree;
     for side in [-1.0, 1.0] {
         let on_side = (0..tree.point_count()).filter(|&i| tree.point(i).y * side > 0.004);
         let facing = on_side.clone().filter(|&i| tree.normal(i).y * side < 0.0);

@@ -2,7 +2,7 @@
 
 use glamx::DVec3;
 use proptest::prelude::*;
-use vps_build::{BuildOptions, Encoding, Mesh, Resolution, build};
+use vps_build::{BuildOptions, Density, Encoding, Mesh, PointCount, Resolution, build};
 use vps_core::{Asset, Pose3, Quat, Vec3};
 
 /// A bumpy ball about 1 m across: closed, facing outwards, not convex.
@@ -27,14 +27,24 @@ pub(crate) fn bumpy_mesh() -> impl Strategy<Value = Mesh> {
 }
 
 pub(crate) fn asset(mesh: &Mesh, points: u32, encoding: Encoding) -> Asset<'static> {
+    asset_of(mesh, points, encoding, Density::Sparse)
+}
+
+pub(crate) fn asset_of(
+    mesh: &Mesh,
+    points: u32,
+    encoding: Encoding,
+    density: Density,
+) -> Asset<'static> {
     let options = BuildOptions {
         resolution: Resolution::VoxelsAlongLongest(18),
         margin: 5,
-        points,
+        points: PointCount::About(points),
         encoding,
+        density,
         ..BuildOptions::default()
     };
-    build(mesh, &options, &|_| ()).unwrap()
+    build(mesh, &options, &|_| ()).unwrap().asset
 }
 
 pub(crate) fn encoding() -> impl Strategy<Value = Encoding> {
@@ -42,6 +52,7 @@ pub(crate) fn encoding() -> impl Strategy<Value = Encoding> {
         3 => Just(Encoding::Distances(None)),
         1 => Just(Encoding::Distances(Some(2))),
         1 => Just(Encoding::Layers),
+        1 => Just(Encoding::Floats),
     ]
 }
 

@@ -5,7 +5,7 @@
 
 use vps_core::{
     Aabb, Accuracy, Cluster, ContactManifold, DistanceField, Grid, PointSphereTree, Pose3, Query,
-    Vec3, Voxelmap,
+    Store, Values, Vec3, Voxelmap,
 };
 
 // Only for its start-up code, which calls `main`.
@@ -61,7 +61,9 @@ fn query() -> Option<bool> {
         far_m: 0.01,
         band_m: 4.0,
     };
-    let map = Voxelmap::new(grid, 1.0, solid, accuracy, FLOOR[..].into()).ok()?;
+    let values = Values::Integers(FLOOR[..].into());
+    let store = Store::dense(grid.dims(), values).ok()?;
+    let map = Voxelmap::new(grid, 1.0, solid, accuracy, store).ok()?;
     let field = map.trilinear();
     let pose = Pose3::from_translation(Vec3::new(0.0, -1.0, 0.0));
     let query = Query::new(&tree, &field, pose);
