@@ -2,7 +2,7 @@ use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelma
 
 use crate::distance::{Exact, by_gradient_walk};
 use crate::layers::layers;
-use crate::mass::{mass_of_mesh, mass_of_voxels};
+use crate::mass::{mass_of_mesh, mass_of_field};
 use crate::solid::{Repairs, Sign, Solid, solid};
 use crate::sparse::{Coding, Source, Tolerance, sparse};
 use crate::{Mesh, MeshError, cluster, sample};
@@ -243,13 +243,13 @@ pub fn build(
     let grid = grid(mesh, options, points)?;
     on_stage(Stage::Voxels);
     let solid = solid(mesh, options.sign, &grid)?;
+    on_stage(Stage::Distances);
+    let voxelmap = voxelmap(&solid, grid, options)?;
     let mass = if solid.is_closed {
         mass_of_mesh(&solid.mesh)?
     } else {
-        mass_of_voxels(&solid.places, &grid)?
+        mass_of_field(&voxelmap)?
     };
-    on_stage(Stage::Distances);
-    let voxelmap = voxelmap(&solid, grid, options)?;
     on_stage(Stage::Points);
     let samples = sample::sample(&solid.mesh, options.points, &voxelmap);
     on_stage(Stage::Tree);

@@ -20,7 +20,7 @@
 //! |---|---|---|
 //! | mesh from a file | [`read_mesh`] | |
 //! | what is wrong with it | [`Health`] | |
-//! | a solid from any mesh | `solid`, `winding` | |
+//! | a solid from any mesh | `solid`, `winding`, `solid_angle` | |
 //! | surface voxels, inside, outside | `places` | 2.1.1 |
 //! | layers | `layers` | 2.1.1 |
 //! | closest points and distances | `bvh`, `distance` | 2.1.1 |
@@ -47,6 +47,7 @@ mod read;
 mod sample;
 mod sat;
 mod solid;
+mod solid_angle;
 mod sparse;
 mod triangle;
 mod winding;

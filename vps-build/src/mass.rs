@@ -1,9 +1,9 @@
 //! Mass properties of the solid within a closed mesh.
 
 use glamx::{DMat3, DVec3};
-use vps_core::{Grid, MassProperties};
+use rayon::prelude::*;
+use vps_core::{MassProperties, Voxelmap};
 
-use crate::places::Places;
 use crate::{BuildError, Mesh};
 
 /// Volume, centre and inertia at density one, exact for a closed mesh that faces outwards: sums
@@ -37,19 +37,30 @@ pub(crate) fn mass_of_mesh(mesh: &Mesh) -> Result<MassProperties, BuildError> {
     properties(origin, volume, moment, covariance)
 }
 
-/// Those of the voxels of a solid, for a mesh whose parts overlap.
-pub(crate) fn mass_of_voxels(places: &Places, grid: &Grid) -> Result<MassProperties, BuildError> {
-    let bounds = grid.bounds();
-    let origin = bounds.center().as_dvec3();
+/// Those of a solid given by its field, for a surface that is open or overlaps: sums over the
+/// voxels, those on the surface counted in part.
+pub(crate) fn mass_of_field(map: &Voxelmap<'_>) -> Result<MassProperties, BuildError> {
+    let grid = map.grid();
+    let origin = grid.bounds().center().as_dvec3();
     let size = f64::from(grid.voxel_size());
-    let voxel = size.powi(3);
-    let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);
-    for center in places.inside_centers() {
-        let at = center.as_dvec3() - origin;
-        volume += voxel;
-        moment += at * voxel;
-        covariance += (outer(at, at) + DMat3::IDENTITY * (size * size / 12.0)) * voxel;
-    }
+    let [nx, ny, nz] = grid.dims();
+    let slice = |z: u32| {
+        let (mut volume, mut moment, mut covariance) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        for voxel in (0..ny).flat_map(|y| (0..nx).map(move |x| [x, y, z])) {
+            let depth = f64::from(map.center_penetration(voxel)) / size;
+            let part = (depth + 0.5).clamp(0.0, 1.0) * size.powi(3);
+            let at = grid.center(voxel).as_dvec3() - origin;
+            volume += part;
+            moment += at * part;
+            covariance += (outer(at, at) + DMat3::IDENTITY * (size * size / 12.0)) * part;
+        }
+        (volume, moment, covariance)
+    };
+    let slices: Vec<_> = (0..nz).into_par_iter().map(slice).collect();
+    let nothing = (0.0, DVec3::ZERO, DMat3::ZERO);
+    let (volume, moment, covariance) = slices
+        .into_iter()
+        .fold(nothing, |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
     properties(origin, volume, moment, covariance)
 }
 

@@ -3,7 +3,7 @@
 
 use glamx::DVec3;
 use rayon::prelude::*;
-use vps_core::{Grid, Vec3};
+use vps_core::Grid;
 
 use crate::winding::windings;
 use crate::{Mesh, sat};
@@ -46,6 +46,24 @@ impl Places {
         let windings = windings(mesh, [&x, &y, &z]);
         let is_simple = windings.iter().all(|w| (0..=1).contains(w));
         places.inside = windings.iter().map(|&w| w > 0).collect();
+        (places.with_surface(mesh, grid), is_simple)
+    }
+
+    /// By generalised winding numbers: the solid is where they are above one half. Says, too,
+    /// whether they are nowhere above one and a half.
+    pub(crate) fn by_generalized_winding(
+        mesh: &Mesh,
+        grid: &Grid,
+        winding: impl Fn(DVec3) -> f64 + Sync,
+    ) -> (Self, bool) {
+        let mut places = Self::outside(mesh, grid);
+        let count = places.inside.len();
+        let windings: Vec<f64> = (0..count)
+            .into_par_iter()
+            .map(|i| winding(grid.center(places.voxel(i)).as_dvec3()))
+            .collect();
+        let is_simple = windings.iter().all(|&w| w < 1.5);
+        places.inside = windings.iter().map(|&w| w > 0.5).collect();
         (places.with_surface(mesh, grid), is_simple)
     }
 
@@ -126,19 +144,16 @@ impl Places {
         self.index(voxel).is_some_and(|i| self.inside[i])
     }
 
-    /// The centres of all voxels in the solid.
-    pub(crate) fn inside_centers(&self) -> impl Iterator<Item = Vec3> {
+    /// Whether no voxel's centre is in the solid.
+    pub(crate) fn is_empty(&self) -> bool {
+        !self.inside.contains(&true)
+    }
+
+    /// The n-th of the voxels that are stored.
+    fn voxel(&self, n: usize) -> [u32; 3] {
         let [nx, ny, _] = self.dims.map(|n| n as usize);
-        let inside = self
-            .inside
-            .iter()
-            .enumerate()
-            .filter(|(_, inside)| **inside);
-        inside.map(move |(i, _)| {
-            let local = [i % nx, i / nx % ny, i / (nx * ny)];
-            let voxel = [0, 1, 2].map(|a| self.low[a] + local[a] as u32);
-            self.grid.center(voxel)
-        })
+        let local = [n % nx, n / nx % ny, n / (nx * ny)];
+        [0, 1, 2].map(|a| self.low[a] + local[a] as u32)
     }
 
     fn index(&self, voxel: [u32; 3]) -> Option<usize> {
@@ -218,6 +233,8 @@ fn fill_outside(dims: [u32; 3], places: &mut [Place]) {
 
 #[cfg(test)]
 mod tests {
+    use vps_core::Vec3;
+
     use super::*;
 
     /// The corner of the mesh marks the corner of the grid, where a fill might have started.

@@ -1,9 +1,10 @@
-//! The solid that a mesh means, as a closed mesh that faces outwards.
+//! The solid that a mesh means, as a surface that faces outwards.
 //!
 //! A clean mesh stays as it is. Otherwise faces that are there twice are taken out, neighbours are
 //! turned the same way, parts that are inside out are turned, and holes are closed by fans. After
 //! that every point has a whole winding number, and the solid is where it is one or more; faces
-//! within the solid, where parts overlap, are taken out.
+//! within the solid, where parts overlap, are taken out. A mesh that consists of holes more than
+//! of faces is left open, and its generalised winding numbers decide.
 
 use glamx::DVec3;
 use rayon::prelude::*;
@@ -12,16 +13,22 @@ use vps_core::Grid;
 
 use crate::health::UnionFind;
 use crate::places::{Place, Places};
+use crate::solid_angle::SolidAngle;
 use crate::winding::Lines;
 use crate::{BuildError, Mesh};
 
 /// Which side of a triangle is the inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sign {
-    /// The one it turns away from, once neighbours agree: by winding numbers. Holes may be of any
-    /// size, and cavities stay hollow if their walls face them.
+    /// As [`Winding`](Self::Winding), or as [`Generalized`](Self::Generalized) if what closes the
+    /// holes would have more than half of the area of the mesh.
     #[default]
+    Auto,
+    /// The one it turns away from, once neighbours agree and holes are closed: by winding numbers.
+    /// Cavities stay hollow if their walls face them.
     Winding,
+    /// Where the generalised winding number is above one half; holes and cracks stay open.
+    Generalized,
     /// The one that cannot be reached from outside through voxels free of triangles: for meshes
     /// whose faces are turned at random. Cavities are filled; holes must be smaller than a voxel.
     Fill,
@@ -40,6 +47,8 @@ pub struct Repairs {
     pub added_faces: usize,
     /// Faces within the solid, taken out.
     pub hidden_faces: usize,
+    /// Whether holes were left open, and generalised winding numbers told what is inside.
+    pub left_open: bool,
 }
 
 impl Repairs {
@@ -69,7 +78,7 @@ pub(crate) fn solid(mesh: &Mesh, sign: Sign, grid: &Grid) -> Result<Solid, Build
     };
     let kept = with_triangles(mesh, &triangles)?;
     match sign {
-        Sign::Winding => {
+        Sign::Auto | Sign::Winding | Sign::Generalized => {
             if !(Edges::of(&triangles).all_closed() && all_parts_outwards(&kept)) {
                 repairs.turned_faces = turn_by_neighbours(&kept, &mut triangles);
             }
@@ -80,41 +89,73 @@ pub(crate) fn solid(mesh: &Mesh, sign: Sign, grid: &Grid) -> Result<Solid, Build
             repairs.hidden_faces = before - triangles.len();
         }
     }
-    let mut vertices = mesh.vertices().to_vec();
-    let (holes, caps) = caps(&mut vertices, &triangles);
-    repairs.closed_holes = holes;
-    repairs.added_faces = caps.len();
-    triangles.extend(caps);
     if triangles.is_empty() {
         return Err(BuildError::NotSolid);
     }
-    let unchanged = triangles == mesh.triangles();
-    let mut closed = if unchanged {
+    let mut vertices = mesh.vertices().to_vec();
+    let (holes, fans) = fans(&mut vertices, &triangles);
+    let area = |triangles: &[[u32; 3]]| -> f64 {
+        let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
+        let double = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length();
+        triangles.iter().map(corners).map(double).sum()
+    };
+    repairs.left_open = match sign {
+        Sign::Winding => false,
+        Sign::Generalized => !fans.is_empty(),
+        Sign::Auto | Sign::Fill => area(&fans) > MOST_CLOSED * area(&triangles),
+    };
+    if !repairs.left_open {
+        repairs.closed_holes = holes;
+        repairs.added_faces = fans.len();
+        triangles.extend(fans);
+    }
+    let surface = if triangles == mesh.triangles() {
         mesh.clone()
     } else {
         Mesh::new(&vertices, &triangles).map_err(BuildError::Mesh)?
     };
-    let (places, is_simple) = Places::by_winding(&closed, grid);
-    if !is_simple {
-        let shown = shown_faces(&closed, grid);
-        repairs.hidden_faces += triangles.len() - shown.len();
-        if shown.is_empty() {
-            return Err(BuildError::NotSolid);
-        }
-        closed = with_triangles(&closed, &shown)?;
+    let (places, is_simple, shown) = if repairs.left_open {
+        let angle = SolidAngle::new(&surface);
+        let winding = |p| angle.winding(p);
+        let (places, is_simple) = Places::by_generalized_winding(&surface, grid, winding);
+        let shown = || shown_faces(&surface, grid, |p| winding(p) > 0.5);
+        (places, is_simple, (!is_simple).then(shown))
+    } else {
+        let (places, is_simple) = Places::by_winding(&surface, grid);
+        let lines = || Lines::new(&surface);
+        let shown = |lines: Lines<'_>| {
+            shown_faces(&surface, grid, |p| lines.winding(p, |_| true) >= 1)
+        };
+        (places, is_simple, (!is_simple).then(|| shown(lines())))
+    };
+    let is_closed = is_simple && !repairs.left_open;
+    if !is_closed && places.is_empty() {
+        return Err(BuildError::NotSolid);
     }
+    let Some(shown) = shown else {
+        return Ok(Solid {
+            mesh: surface,
+            places,
+            is_closed,
+            repairs,
+        });
+    };
+    repairs.hidden_faces += triangles.len() - shown.len();
+    if shown.is_empty() {
+        return Err(BuildError::NotSolid);
+    }
+    let mesh = with_triangles(&surface, &shown)?;
     Ok(Solid {
         // The places of hidden faces are no surface.
-        places: if is_simple {
-            places
-        } else {
-            places.with_surface(&closed, grid)
-        },
-        mesh: closed,
-        is_closed: is_simple,
+        places: places.with_surface(&mesh, grid),
+        mesh,
+        is_closed,
         repairs,
     })
 }
+
+/// Above what share of its area the fans that close a mesh mean that it has no holes but cracks.
+const MOST_CLOSED: f64 = 0.5;
 
 fn with_triangles(mesh: &Mesh, triangles: &[[u32; 3]]) -> Result<Mesh, BuildError> {
     if triangles == mesh.triangles() {
@@ -356,7 +397,7 @@ fn turn_by_fill(mesh: &Mesh, grid: &Grid, triangles: &mut Vec<[u32; 3]>) -> usiz
 
 /// Fans that close all holes: from the middle of each rim, whose vertex is added, to its edges.
 /// Returns how many holes there are, too.
-fn caps(vertices: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 3]>) {
+fn fans(vertices: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 3]>) {
     let mut rims = UnionFind::new(vertices.len());
     let mut open = Vec::new();
     for uses in Edges::of(triangles).groups() {
@@ -395,17 +436,19 @@ fn caps(vertices: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 
 const FACE_OFFSET: f64 = 1e-4;
 
 /// The faces between the solid and the rest.
-fn shown_faces(mesh: &Mesh, grid: &Grid) -> Vec<[u32; 3]> {
-    let lines = Lines::new(mesh);
+fn shown_faces(
+    mesh: &Mesh,
+    grid: &Grid,
+    in_solid: impl Fn(DVec3) -> bool + Sync,
+) -> Vec<[u32; 3]> {
     let offset = FACE_OFFSET * f64::from(grid.voxel_size());
-    let is_shown = |t: usize| {
+    let is_shown = |&t: &usize| {
         let [a, b, c] = mesh.corners(t);
         let middle = (a + b + c) / 3.0;
         let normal = (b - a).cross(c - a).normalize_or_zero() * offset;
-        let in_solid = |p: DVec3| lines.winding(p, |_| true) >= 1;
         in_solid(middle - normal) && !in_solid(middle + normal)
     };
     let all = mesh.triangles();
-    let shown = (0..all.len()).into_par_iter().filter(|&t| is_shown(t));
+    let shown = (0..all.len()).into_par_iter().filter(is_shown);
     shown.map(|t| all[t]).collect()
 }

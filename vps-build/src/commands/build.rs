@@ -58,7 +58,7 @@ pub(crate) struct BuildArgs {
     #[arg(long, value_enum, default_value_t = StoreName::Auto)]
     store: StoreName,
     /// Which side of a face is the inside
-    #[arg(long, value_enum, default_value_t = SignName::Winding)]
+    #[arg(long, value_enum, default_value_t = SignName::Auto)]
     sign: SignName,
     /// Where the clustering starts
     #[arg(long, default_value_t = 1)]
@@ -107,8 +107,12 @@ enum StoreName {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum SignName {
+    /// By winding numbers, generalised ones if the mesh has more holes than faces
+    Auto,
     /// By winding numbers, once neighbours agree and holes are closed
     Winding,
+    /// By generalised winding numbers, with holes left open
+    Generalized,
     /// What cannot be reached from outside is inside, however faces are turned
     Fill,
 }
@@ -141,7 +145,9 @@ impl BuildArgs {
                 StoreName::Sparse => Density::Sparse,
             },
             sign: match self.sign {
+                SignName::Auto => Sign::Auto,
                 SignName::Winding => Sign::Winding,
+                SignName::Generalized => Sign::Generalized,
                 SignName::Fill => Sign::Fill,
             },
             seed: self.seed,
@@ -227,9 +233,10 @@ fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -
 /// How the inside was found, in words.
 fn sign(name: SignName, repairs: &Repairs) -> String {
     let way = match name {
-        SignName::Winding if repairs.is_none() => return "the mesh is watertight".into(),
-        SignName::Winding => "by winding numbers",
         SignName::Fill => "by what cannot be reached from outside",
+        _ if repairs.is_none() => return "the mesh is watertight".into(),
+        _ if repairs.left_open => "by generalised winding numbers, holes left open",
+        _ => "by winding numbers",
     };
     let Repairs {
         removed_faces,
@@ -237,6 +244,7 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         closed_holes,
         added_faces,
         hidden_faces,
+        left_open: _,
     } = *repairs;
     let mut done = Vec::new();
     let mut tell = |count: usize, what: &str| {
@@ -287,6 +295,7 @@ fn for_machines(
         "closed_holes": repairs.closed_holes,
         "added_faces": repairs.added_faces,
         "hidden_faces": repairs.hidden_faces,
+        "left_open": repairs.left_open,
         "seconds": seconds,
     })
 }

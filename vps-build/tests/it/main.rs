@@ -2,4 +2,5 @@
 
 mod files;
 mod invariants;
+mod solids;
 mod support;

@@ -1,0 +1,240 @@
+//! Meshes that are no clean solids become what they mean.
+
+use crate::support::{bumpy_mesh, exact_penetration};
+use glamx::DVec3;
+use proptest::prelude::*;
+use vps_build::{
+    BuildError, BuildOptions, Built, Density, Mesh, PointCount, Repairs, Resolution, Sign, build,
+};
+
+fn options(sign: Sign) -> BuildOptions {
+    BuildOptions {
+        resolution: Resolution::VoxelsAlongLongest(24),
+        points: PointCount::About(50),
+        density: Density::Dense,
+        sign,
+        ..BuildOptions::default()
+    }
+}
+
+fn built(mesh: &Mesh, sign: Sign) -> Built {
+    build(mesh, &options(sign), &|_| ()).unwrap()
+}
+
+/// Triangles of one mesh after those of another.
+fn together(a: &Mesh, b: &Mesh) -> Mesh {
+    let vertices = [a.vertices(), b.vertices()].concat();
+    let shift = a.vertices().len() as u32;
+    let shifted = b.triangles().iter().map(|t| t.map(|v| v + shift));
+    let triangles: Vec<_> = a.triangles().iter().copied().chain(shifted).collect();
+    Mesh::new(&vertices, &triangles).unwrap()
+}
+
+fn moved(mesh: &Mesh, by: DVec3) -> Mesh {
+    let vertices: Vec<_> = mesh.vertices().iter().map(|&v| v + by).collect();
+    Mesh::new(&vertices, mesh.triangles()).unwrap()
+}
+
+fn turned(mesh: &Mesh) -> Mesh {
+    let triangles: Vec<_> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    Mesh::new(mesh.vertices(), &triangles).unwrap()
+}
+
+/// Checks the penetration of all voxels against `exact`, to within `error` metres, but for voxels
+/// that `skip`.
+fn check(
+    built: &Built,
+    error: f64,
+    exact: impl Fn(DVec3) -> f64,
+    skip: impl Fn(DVec3) -> bool,
+) -> Result<(), TestCaseError> {
+    let map = &built.asset.voxelmap;
+    let grid = map.grid();
+    let [nx, ny, nz] = grid.dims();
+    for i in (0..nx * ny * nz).step_by(37) {
+        let voxel = [i % nx, i / nx % ny, i / (nx * ny)];
+        let center = grid.center(voxel).as_dvec3();
+        if !skip(center) {
+            let (stored, exact) = (f64::from(map.center_penetration(voxel)), exact(center));
+            prop_assert!((stored - exact).abs() <= error, "{voxel:?}: {stored}, exact {exact}");
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Doubled, turned and degenerate triangles change nothing at all.
+    #[test]
+    fn clutter_is_cleared(
+        mesh in bumpy_mesh(),
+        doubled in prop::collection::vec(any::<prop::sample::Index>(), 0..8),
+        flipped in prop::collection::hash_set(0..1280_usize, 0..400),
+        inside_out in any::<bool>(),
+    ) {
+        let mut triangles = mesh.triangles().to_vec();
+        for &t in &flipped {
+            triangles[t].reverse();
+        }
+        if inside_out {
+            triangles.iter_mut().for_each(|t| t.reverse());
+        }
+        for index in &doubled {
+            triangles.push(mesh.triangles()[index.index(1280)]);
+        }
+        triangles.push([5, 5, 9]);
+        let cluttered = Mesh::new(mesh.vertices(), &triangles).unwrap();
+        let found = built(&cluttered, Sign::Winding);
+        let expected = built(&mesh, Sign::Winding);
+        prop_assert_eq!(
+            vps_core::encode(&found.asset).len(), vps_core::encode(&expected.asset).len());
+        prop_assert_eq!(found.repairs.removed_faces, doubled.len() + 1);
+        prop_assert_eq!((found.repairs.closed_holes, found.repairs.hidden_faces), (0, 0));
+        let near = f64::from(found.asset.voxelmap.accuracy().near_m);
+        check(&found, near, |p| exact_penetration(&mesh, p), |_| false)?;
+        let filled = built(&cluttered, Sign::Fill);
+        prop_assert_eq!(filled.asset.mass.volume > 0.0, true);
+    }
+
+    /// Away from a hole the solid is what it would be without, whatever the hole's shape.
+    #[test]
+    fn holes_are_closed(mesh in bumpy_mesh(), at in 0..1280_usize, size in 0.02..0.25_f64) {
+        let middle = |t: &[u32; 3]| {
+            t.iter().map(|&v| mesh.vertices()[v as usize]).sum::<DVec3>() / 3.0
+        };
+        let center = middle(&mesh.triangles()[at]);
+        let (gone, left): (Vec<_>, Vec<_>) =
+            mesh.triangles().iter().partition(|t| middle(t).distance(center) < size);
+        prop_assume!(!gone.is_empty());
+        let holed = Mesh::new(mesh.vertices(), &left).unwrap();
+        let built = built(&holed, Sign::Winding);
+        prop_assert!(built.repairs.closed_holes >= 1 && built.repairs.turned_faces == 0);
+        // Signs may differ only where the removed part of the surface, or the fan that took its
+        // place, is closer than the rest; both lie in the ball around what was removed.
+        let reach = gone.iter().flatten().map(|&v| mesh.vertices()[v as usize].distance(center));
+        let reach = reach.fold(0.0, f64::max);
+        let near = f64::from(built.asset.voxelmap.accuracy().near_m);
+        check(&built, near, |p| exact_penetration(&mesh, p), |p| {
+            p.distance(center) - reach <= exact_penetration(&mesh, p).abs() + 1e-9
+        })?;
+    }
+}
+
+#[test]
+fn a_cavity_stays_hollow_and_an_inner_part_is_swallowed() {
+    let outer = Mesh::icosphere(0.5, 3).unwrap();
+    let inner = Mesh::icosphere(0.2, 2).unwrap();
+    let hollow = built(&together(&outer, &turned(&inner)), Sign::Winding);
+    assert!(hollow.repairs.is_none());
+    let solid = built(&together(&outer, &inner), Sign::Winding);
+    assert_eq!(solid.repairs.hidden_faces, inner.triangles().len());
+    let filled = built(&together(&outer, &turned(&inner)), Sign::Fill);
+    assert_eq!(filled.repairs.hidden_faces, inner.triangles().len());
+    let at_center = |built: &Built| {
+        let map = &built.asset.voxelmap;
+        map.center_penetration(map.grid().voxel_at(vps_core::Vec3::ZERO))
+    };
+    assert!(at_center(&hollow) < -0.1);
+    assert!(at_center(&solid) > 0.4 && at_center(&filled) > 0.4);
+    let volume = |built: &Built| built.asset.mass.volume;
+    let expected = volume(&built(&outer, Sign::Winding));
+    let hole = volume(&built(&inner, Sign::Winding));
+    assert!((volume(&hollow) - (expected - hole)).abs() < 1e-4 * expected);
+    assert!((volume(&filled) - expected).abs() < 1e-4 * expected);
+    // Counted in voxels, since the faces of both count.
+    assert!((volume(&solid) - expected).abs() < 0.01 * expected);
+}
+
+#[test]
+fn parts_beside_each_other_are_each_turned_outwards() {
+    let ball = Mesh::icosphere(0.3, 2).unwrap();
+    let apart = together(&ball, &turned(&moved(&ball, DVec3::X)));
+    let built = built(&apart, Sign::Winding);
+    assert_eq!(built.repairs.turned_faces, ball.triangles().len());
+    let exact = |p: DVec3| {
+        exact_penetration(&ball, p).max(exact_penetration(&moved(&ball, DVec3::X), p))
+    };
+    let near = f64::from(built.asset.voxelmap.accuracy().near_m);
+    check(&built, near, exact, |_| false).unwrap();
+}
+
+/// Two boxes that overlap are one solid: nothing of either is left within the other.
+#[test]
+fn overlapping_parts_are_one_solid() {
+    let a = Mesh::cuboid([1.0, 0.4, 0.4]).unwrap();
+    let b = Mesh::cuboid([0.4, 1.0, 0.4 - 1e-3]).unwrap();
+    // Small faces, so that each lies on one side.
+    let (a, b) = (finer(&a, 4), finer(&b, 4));
+    let built = built(&together(&a, &b), Sign::Winding);
+    assert!(built.repairs.hidden_faces > 100);
+    let map = &built.asset.voxelmap;
+    let center = map.center_penetration(map.grid().voxel_at(vps_core::Vec3::ZERO));
+    // The walls of each within the other would be 0.2 m away, too, but not along the arms.
+    assert!((center - 0.2).abs() < 0.03);
+    let arm = map.center_penetration(map.grid().voxel_at(vps_core::Vec3::new(0.19, 0.0, 0.0)));
+    assert!(arm > 0.15, "{arm}");
+    let volume = 0.16 + 0.399 * (0.4 - 0.16);
+    assert!((built.asset.mass.volume / volume - 1.0).abs() < 0.02);
+}
+
+fn finer(mesh: &Mesh, times: u32) -> Mesh {
+    let mut vertices = mesh.vertices().to_vec();
+    let mut triangles = mesh.triangles().to_vec();
+    for _ in 0..times {
+        triangles = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| {
+                let mut middle = |a: u32, b: u32| {
+                    vertices.push(vertices[a as usize].midpoint(vertices[b as usize]));
+                    vertices.len() as u32 - 1
+                };
+                let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    Mesh::new(&vertices, &triangles).unwrap()
+}
+
+/// A wall of triangles turned at random is a solid by what can be reached, not by winding numbers.
+#[test]
+fn faces_apart_and_turned_at_random_are_filled() {
+    let ball = Mesh::icosphere(0.5, 3).unwrap();
+    // No two triangles share a vertex place: each is a little smaller about its middle.
+    let mut vertices = Vec::new();
+    for (i, t) in ball.triangles().iter().enumerate() {
+        let corners = t.map(|v| ball.vertices()[v as usize]);
+        let middle = corners.iter().sum::<DVec3>() / 3.0;
+        let mut corners = corners.map(|v| middle + (v - middle) * (1.0 - 1e-6));
+        if i % 3 == 0 {
+            corners.reverse();
+        }
+        vertices.extend(corners);
+    }
+    let triangles: Vec<_> = (0..vertices.len() as u32 / 3)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect();
+    let soup = Mesh::new(&vertices, &triangles).unwrap();
+    let filled = built(&soup, Sign::Fill);
+    assert_eq!(filled.repairs.turned_faces, triangles.len().div_ceil(3));
+    assert!(filled.repairs.left_open);
+    assert!((filled.asset.mass.volume / (std::f32::consts::PI / 6.0) - 1.0).abs() < 0.03);
+    let near = f64::from(filled.asset.voxelmap.accuracy().near_m) + 1e-6;
+    check(&filled, near, |p| exact_penetration(&ball, p), |p| {
+        (p.length() - 0.5).abs() < 0.005
+    })
+    .unwrap();
+}
+
+#[test]
+fn a_sheet_is_no_solid() {
+    let v = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let sheet = Mesh::new(&v, &[[0, 1, 2]]).unwrap();
+    for sign in [Sign::Auto, Sign::Winding, Sign::Generalized, Sign::Fill] {
+        let result = build(&sheet, &options(sign), &|_| ());
+        assert_eq!(result.err(), Some(BuildError::NotSolid));
+    }
+    let none = Repairs::default();
+    assert!(none.is_none());
+}
