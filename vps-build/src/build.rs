@@ -2,7 +2,7 @@ use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelma
 
 use crate::distance::{Exact, by_gradient_walk};
 use crate::layers::layers;
-use crate::mass::{mass_of_mesh, mass_of_field};
+use crate::mass::{mass_of_field, mass_of_mesh};
 use crate::solid::{Repairs, Sign, Solid, solid};
 use crate::sparse::{Coding, Source, Tolerance, sparse};
 use crate::{Mesh, MeshError, cluster, sample};

@@ -7,7 +7,7 @@ use vps_core::Grid;
 use crate::Mesh;
 use crate::bvh::{Bvh, Closest};
 use crate::layers::layers;
-use crate::places::{Place, Places};
+use crate::places::{AROUND, Place, Places};
 use crate::triangle::closest_point;
 
 /// Exact penetrations, each found when it is asked for.
@@ -90,7 +90,9 @@ pub(crate) fn by_gradient_walk(mesh: &Mesh, grid: &Grid, places: &Places) -> Vec
                 let length: i64 = step.iter().map(|s| s * s).sum();
                 along as f64 / (length as f64).sqrt()
             };
-            let step = neighbours()
+            let step = AROUND
+                .map(|step| step.map(i64::from))
+                .into_iter()
                 .filter(downhill)
                 .max_by(|a, b| steepness(a).total_cmp(&steepness(b)))
                 .expect("each layer lies next to a lower one");
@@ -121,10 +123,4 @@ pub(crate) fn by_gradient_walk(mesh: &Mesh, grid: &Grid, places: &Places) -> Vec
             }
         });
     all
-}
-
-/// The steps to the 26 voxels around one.
-fn neighbours() -> impl Iterator<Item = [i64; 3]> {
-    let all = (-1..=1).flat_map(|x| (-1..=1).flat_map(move |y| (-1..=1).map(move |z| [x, y, z])));
-    all.filter(|step| *step != [0; 3])
 }

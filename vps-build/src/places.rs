@@ -231,6 +231,28 @@ fn fill_outside(dims: [u32; 3], places: &mut [Place]) {
     }
 }
 
+/// The steps to the 26 cells around one, those that share a face first.
+pub(crate) const AROUND: [[i32; 3]; 26] = around();
+
+const fn around() -> [[i32; 3]; 26] {
+    let mut steps = [[0; 3]; 26];
+    let (mut filled, mut shared) = (0, 1);
+    while shared <= 3 {
+        let mut i = 0;
+        while i < 27 {
+            let step = [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1];
+            let length = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
+            if length == shared {
+                steps[filled] = step;
+                filled += 1;
+            }
+            i += 1;
+        }
+        shared += 1;
+    }
+    steps
+}
+
 #[cfg(test)]
 mod tests {
     use vps_core::Vec3;

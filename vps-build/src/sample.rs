@@ -2,10 +2,11 @@
 //! when they are not too close to each other.
 
 use glamx::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use vps_core::{DistanceField, Vec3, Voxelmap};
 
-use crate::places::for_each_overlapped;
+use crate::places::{AROUND, for_each_overlapped};
 use crate::triangle::closest_point;
 use crate::{Mesh, PointCount};
 
@@ -29,8 +30,8 @@ pub(crate) struct Samples {
     pub(crate) normals: Vec<Vec3>,
 }
 
-/// What part of its spacing squared a point covers.
-const COVERED: f64 = 0.7;
+/// How many times its spacing squared a point covers, about.
+const COVERED: f64 = 1.4;
 
 /// About how many points there are on so much area.
 pub(crate) fn about_count(area: f64, spacing: f64) -> f64 {
@@ -53,6 +54,7 @@ fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
     let mut spacing = (mesh.area() / (COVERED * target)).sqrt();
     // Spacings that gave too many points and too few; the truth lies between.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
+    let mut last: Option<(f64, f64)> = None;
     let mut best: Option<(f64, Vec<DVec3>)> = None;
     for round in 0..MOST_ROUNDS {
         let positions = spread(mesh, spacing).points;
@@ -77,7 +79,12 @@ fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
         } else {
             too_large = spacing;
         }
-        spacing *= (found / target).sqrt();
+        // Points are about as many as this power of their spacing.
+        let power = last.map_or(-2.0, |(last_spacing, last_found)| {
+            (found / last_found).ln() / (spacing / last_spacing).ln()
+        });
+        last = Some((spacing, found));
+        spacing *= (target / found).powf(1.0 / power.clamp(-3.0, -1.0));
         if !(too_small < spacing && spacing < too_large) {
             spacing = f64::midpoint(too_small, too_large);
         }
@@ -91,28 +98,45 @@ fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
     let size = spacing / ALPHA;
     let origin = mesh.bounds().0;
     let mut kept = Spaced::new(spacing);
-    for t in 0..mesh.triangles().len() {
-        let triangle = mesh.corners(t);
-        let [a, b, c] = triangle;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        for_each_overlapped(triangle, origin, size, |_, center| {
-            kept.offer(closest_point(triangle, center), normal);
-        });
+    let triangles: Vec<_> = (0..mesh.triangles().len()).collect();
+    // So many triangles at a time that their candidates, however many, take little memory.
+    for triangles in triangles.chunks(TRIANGLES_AT_ONCE) {
+        let candidates: Vec<Vec<_>> = triangles
+            .par_chunks(TRIANGLES_AT_ONCE / 64)
+            .map(|triangles| {
+                let mut candidates = Vec::new();
+                for &t in triangles {
+                    let triangle = mesh.corners(t);
+                    let [a, b, c] = triangle;
+                    let normal = (b - a).cross(c - a).normalize_or_zero();
+                    for_each_overlapped(triangle, origin, size, |_, center| {
+                        candidates.push((closest_point(triangle, center), normal));
+                    });
+                }
+                candidates
+            })
+            .collect();
+        for (point, normal) in candidates.into_iter().flatten() {
+            kept.offer(point, normal);
+        }
     }
     kept
 }
+
+/// How many triangles offer their points in parallel before they are chosen from.
+const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
 /// Points whose triangles face away from each other by more than this cosine are not neighbours,
 /// however close: they lie on the two sides of a thin wall.
 const OPPOSED: f64 = -0.5;
 
-/// Points that keep a distance, in cells of that size.
+/// Points that keep a distance.
 struct Spaced {
     spacing: f64,
     points: Vec<DVec3>,
     /// Of the triangles the points lie on.
     normals: Vec<DVec3>,
-    cells: FxHashMap<[i64; 3], Vec<u32>>,
+    cells: Cells,
 }
 
 impl Spaced {
@@ -121,36 +145,78 @@ impl Spaced {
             spacing,
             points: Vec::new(),
             normals: Vec::new(),
-            cells: FxHashMap::default(),
+            cells: Cells::new(spacing),
         }
     }
 
     /// Keeps the point unless a neighbour is closer than the spacing.
     fn offer(&mut self, point: DVec3, normal: DVec3) {
-        let cell = (point / self.spacing).floor().as_i64vec3().to_array();
         let closest = self.spacing * self.spacing;
-        for dz in -1..=1 {
-            for dy in -1..=1 {
-                for dx in -1..=1 {
-                    let near = [cell[0] + dx, cell[1] + dy, cell[2] + dz];
-                    let near = self.cells.get(&near).into_iter().flatten();
-                    for &other in near {
-                        let other = other as usize;
-                        if self.points[other].distance_squared(point) < closest
-                            && self.normals[other].dot(normal) > OPPOSED
-                        {
-                            return;
-                        }
-                    }
-                }
-            }
+        let is_taken = |other: usize| {
+            self.points[other].distance_squared(point) < closest
+                && self.normals[other].dot(normal) > OPPOSED
+        };
+        if !self.cells.any_near(point, is_taken) {
+            self.cells.push(point);
+            self.points.push(point);
+            self.normals.push(normal);
         }
-        self.cells
-            .entry(cell)
-            .or_default()
-            .push(self.points.len() as u32);
-        self.points.push(point);
-        self.normals.push(normal);
+    }
+}
+
+/// Numbered points by the cells of a lattice they lie in.
+struct Cells {
+    size: f64,
+    /// The last point of each cell.
+    last: FxHashMap<[i32; 3], u32>,
+    /// For each point the one before it in its cell, or [`NO_POINT`].
+    before: Vec<u32>,
+}
+
+const NO_POINT: u32 = u32::MAX;
+
+impl Cells {
+    fn new(size: f64) -> Self {
+        Self {
+            size,
+            last: FxHashMap::default(),
+            before: Vec::new(),
+        }
+    }
+
+    fn cell(&self, point: DVec3) -> [i32; 3] {
+        // Far away, where numbers saturate, cells become one.
+        (point / self.size).to_array().map(|c| c.floor() as i32)
+    }
+
+    /// Adds the next point.
+    fn push(&mut self, point: DVec3) {
+        let number = self.before.len() as u32;
+        let last = self.last.insert(self.cell(point), number);
+        self.before.push(last.unwrap_or(NO_POINT));
+    }
+
+    /// Whether something is so for a point in the cell of `point`, or in the 26 around it: all that
+    /// are no further than the size of a cell, and more.
+    fn any_near(&self, point: DVec3, mut is_so: impl FnMut(usize) -> bool) -> bool {
+        let cell = self.cell(point);
+        let mut in_cell = |[x, y, z]: [i32; 3]| {
+            let near = [
+                cell[0].saturating_add(x),
+                cell[1].saturating_add(y),
+                cell[2].saturating_add(z),
+            ];
+            let mut number = self.last.get(&near).copied().unwrap_or(NO_POINT);
+            while number != NO_POINT {
+                if is_so(number as usize) {
+                    return true;
+                }
+                number = self.before[number as usize];
+            }
+            false
+        };
+        // What is near lies most often in the same cell.
+        in_cell([0; 3]) || AROUND.into_iter().any(in_cell)
     }
 }
 
@@ -159,18 +225,13 @@ impl Spaced {
 pub(crate) fn opposed_within(mesh: &Mesh, thickness: f64) -> f64 {
     // Fine enough that behind every thin place there is a point almost opposite.
     let samples = spread(mesh, 0.5 * thickness);
-    let cell = |p: DVec3| (p / thickness).floor().as_i64vec3().to_array();
-    let mut cells: FxHashMap<[i64; 3], Vec<usize>> = FxHashMap::default();
-    for (i, &point) in samples.points.iter().enumerate() {
-        cells.entry(cell(point)).or_default().push(i);
+    let mut cells = Cells::new(thickness);
+    for &point in &samples.points {
+        cells.push(point);
     }
     let is_thin = |&i: &usize| {
         let (point, normal) = (samples.points[i], samples.normals[i]);
-        let [x, y, z] = cell(point);
-        let around = (-1..=1).flat_map(move |dx| {
-            (-1..=1).flat_map(move |dy| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]))
-        });
-        around.filter_map(|c| cells.get(&c)).flatten().any(|&j| {
+        cells.any_near(point, |j| {
             let to_other = samples.points[j] - point;
             let depth = -to_other.dot(normal);
             let aside = (to_other + normal * depth).length();

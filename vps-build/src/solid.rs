@@ -123,9 +123,8 @@ pub(crate) fn solid(mesh: &Mesh, sign: Sign, grid: &Grid) -> Result<Solid, Build
     } else {
         let (places, is_simple) = Places::by_winding(&surface, grid);
         let lines = || Lines::new(&surface);
-        let shown = |lines: Lines<'_>| {
-            shown_faces(&surface, grid, |p| lines.winding(p, |_| true) >= 1)
-        };
+        let shown =
+            |lines: Lines<'_>| shown_faces(&surface, grid, |p| lines.winding(p, |_| true) >= 1);
         (places, is_simple, (!is_simple).then(|| shown(lines())))
     };
     let is_closed = is_simple && !repairs.left_open;
@@ -436,11 +435,7 @@ fn fans(vertices: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 
 const FACE_OFFSET: f64 = 1e-4;
 
 /// The faces between the solid and the rest.
-fn shown_faces(
-    mesh: &Mesh,
-    grid: &Grid,
-    in_solid: impl Fn(DVec3) -> bool + Sync,
-) -> Vec<[u32; 3]> {
+fn shown_faces(mesh: &Mesh, grid: &Grid, in_solid: impl Fn(DVec3) -> bool + Sync) -> Vec<[u32; 3]> {
     let offset = FACE_OFFSET * f64::from(grid.voxel_size());
     let is_shown = |&t: &usize| {
         let [a, b, c] = mesh.corners(t);

@@ -61,9 +61,17 @@ impl<'m> SolidAngle<'m> {
             low = low.min(a).min(b).min(c);
             high = high.max(a).max(b).max(c);
         }
-        let center = if area > 0.0 { moment / area } else { low.midpoint(high) };
+        let center = if area > 0.0 {
+            moment / area
+        } else {
+            low.midpoint(high)
+        };
         let distance = |v: DVec3| v.distance(center);
-        let radius = triangles.iter().flat_map(corners).map(distance).fold(0.0, f64::max);
+        let radius = triangles
+            .iter()
+            .flat_map(corners)
+            .map(distance)
+            .fold(0.0, f64::max);
         let this = self.nodes.len();
         self.nodes.push(Node {
             center,

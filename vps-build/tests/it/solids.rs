@@ -36,7 +36,11 @@ fn moved(mesh: &Mesh, by: DVec3) -> Mesh {
 }
 
 fn turned(mesh: &Mesh) -> Mesh {
-    let triangles: Vec<_> = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let triangles: Vec<_> = mesh
+        .triangles()
+        .iter()
+        .map(|&[a, b, c]| [a, c, b])
+        .collect();
     Mesh::new(mesh.vertices(), &triangles).unwrap()
 }
 
@@ -56,7 +60,10 @@ fn check(
         let center = grid.center(voxel).as_dvec3();
         if !skip(center) {
             let (stored, exact) = (f64::from(map.center_penetration(voxel)), exact(center));
-            prop_assert!((stored - exact).abs() <= error, "{voxel:?}: {stored}, exact {exact}");
+            prop_assert!(
+                (stored - exact).abs() <= error,
+                "{voxel:?}: {stored}, exact {exact}"
+            );
         }
     }
     Ok(())
@@ -152,9 +159,8 @@ fn parts_beside_each_other_are_each_turned_outwards() {
     let apart = together(&ball, &turned(&moved(&ball, DVec3::X)));
     let built = built(&apart, Sign::Winding);
     assert_eq!(built.repairs.turned_faces, ball.triangles().len());
-    let exact = |p: DVec3| {
-        exact_penetration(&ball, p).max(exact_penetration(&moved(&ball, DVec3::X), p))
-    };
+    let exact =
+        |p: DVec3| exact_penetration(&ball, p).max(exact_penetration(&moved(&ball, DVec3::X), p));
     let near = f64::from(built.asset.voxelmap.accuracy().near_m);
     check(&built, near, exact, |_| false).unwrap();
 }
@@ -221,9 +227,12 @@ fn faces_apart_and_turned_at_random_are_filled() {
     assert!(filled.repairs.left_open);
     assert!((filled.asset.mass.volume / (std::f32::consts::PI / 6.0) - 1.0).abs() < 0.03);
     let near = f64::from(filled.asset.voxelmap.accuracy().near_m) + 1e-6;
-    check(&filled, near, |p| exact_penetration(&ball, p), |p| {
-        (p.length() - 0.5).abs() < 0.005
-    })
+    check(
+        &filled,
+        near,
+        |p| exact_penetration(&ball, p),
+        |p| (p.length() - 0.5).abs() < 0.005,
+    )
     .unwrap();
 }
 
