@@ -335,7 +335,7 @@ fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildE
 }
 
 fn voxelmap(
-    solid: &Solid,
+    solid: &Solid<'_>,
     grid: Grid,
     options: &BuildOptions,
 ) -> Result<Voxelmap<'static>, BuildError> {

@@ -1,6 +1,7 @@
 use std::collections::HashMap;
 
 use glamx::DVec3;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 /// A triangle mesh in metres, checked: its triangles refer to finite vertices and it extends in
 /// space.
@@ -71,7 +72,7 @@ impl Mesh {
     }
 
     fn welded(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Self {
-        let mut first_at = HashMap::new();
+        let mut first_at = FxHashMap::with_capacity_and_hasher(vertices.len(), FxBuildHasher);
         let mut kept = Vec::new();
         let mut weld = |v: u32| {
             let position = vertices[v as usize];
@@ -177,6 +178,9 @@ impl Mesh {
     pub fn scaled(&self, scale: f64) -> Result<Self, MeshError> {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(MeshError::Scale(scale));
+        }
+        if scale == 1.0 {
+            return Ok(self.clone());
         }
         let vertices: Vec<_> = self.vertices.iter().map(|&v| v * scale).collect();
         Self::new(&vertices, &self.triangles)

@@ -177,11 +177,18 @@ pub(crate) fn for_each_overlapped(
     let nudge = DVec3::splat(1e-9);
     let low = (a.min(b).min(c) - nudge).floor().as_i64vec3();
     let high = (a.max(b).max(c) + nudge).floor().as_i64vec3();
+    // What lies in one row of cells passes through all between its ends.
+    let wide = (high - low)
+        .to_array()
+        .into_iter()
+        .filter(|&n| n > 0)
+        .count();
+    let in_a_row = wide <= 1;
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             for x in low.x..=high.x {
                 let center = origin + (DVec3::new(x as f64, y as f64, z as f64) + 0.5) * size;
-                if sat::overlaps(triangle, center, 0.5 * size) {
+                if in_a_row || sat::overlaps(triangle, center, 0.5 * size) {
                     visit([x, y, z], center);
                 }
             }

@@ -16,8 +16,8 @@ const ALPHA: f64 = std::f64::consts::SQRT_2;
 /// How far a point count may be from the one asked for, as a fraction, before another spacing is
 /// tried: little while all rounds together have made few points, then more.
 const STRICT_TOLERANCE: f64 = 0.001;
-const COUNT_TOLERANCE: f64 = 0.005;
-const CHEAP_POINTS: u64 = 100_000;
+const COUNT_TOLERANCE: f64 = 0.01;
+const CHEAP_POINTS: u64 = 20_000;
 
 /// How many spacings are tried.
 const MOST_ROUNDS: u64 = 12;
@@ -31,7 +31,7 @@ pub(crate) struct Samples {
 }
 
 /// How many times its spacing squared a point covers, about.
-const COVERED: f64 = 1.4;
+const COVERED: f64 = 1.5;
 
 /// About how many points there are on so much area.
 pub(crate) fn about_count(area: f64, spacing: f64) -> f64 {

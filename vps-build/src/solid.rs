@@ -6,6 +6,8 @@
 //! within the solid, where parts overlap, are taken out. A mesh that consists of holes more than
 //! of faces is left open, and its generalised winding numbers decide.
 
+use std::borrow::Cow;
+
 use glamx::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -59,9 +61,9 @@ impl Repairs {
 }
 
 /// A solid.
-pub(crate) struct Solid {
+pub(crate) struct Solid<'m> {
     /// Its surface.
-    pub(crate) mesh: Mesh,
+    pub(crate) mesh: Cow<'m, Mesh>,
     /// Where its voxels are.
     pub(crate) places: Places,
     /// Whether the mesh is closed and nowhere within itself, so that sums over its faces are exact.
@@ -70,27 +72,78 @@ pub(crate) struct Solid {
 }
 
 /// The solid that the mesh means, on a grid.
-pub(crate) fn solid(mesh: &Mesh, sign: Sign, grid: &Grid) -> Result<Solid, BuildError> {
-    let mut triangles = without_doubles(mesh);
-    let mut repairs = Repairs {
-        removed_faces: mesh.triangles().len() - triangles.len(),
-        ..Repairs::default()
+pub(crate) fn solid<'m>(mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Solid<'m>, BuildError> {
+    let mut repairs = Repairs::default();
+    let surface = surface(mesh, sign, grid, &mut repairs)?;
+    let (places, is_simple, shown) = if repairs.left_open {
+        let angle = SolidAngle::new(&surface);
+        let winding = |p| angle.winding(p);
+        let (places, is_simple) = Places::by_generalized_winding(&surface, grid, winding);
+        let shown = || shown_faces(&surface, grid, |p| winding(p) > 0.5);
+        (places, is_simple, (!is_simple).then(shown))
+    } else {
+        let (places, is_simple) = Places::by_winding(&surface, grid);
+        let shown = || {
+            let lines = Lines::new(&surface);
+            shown_faces(&surface, grid, |p| lines.winding(p, |_| true) >= 1)
+        };
+        (places, is_simple, (!is_simple).then(shown))
     };
-    let kept = with_triangles(mesh, &triangles)?;
-    match sign {
-        Sign::Auto | Sign::Winding | Sign::Generalized => {
-            if !(Edges::of(&triangles).all_closed() && all_parts_outwards(&kept)) {
-                repairs.turned_faces = turn_by_neighbours(&kept, &mut triangles);
-            }
-        }
-        Sign::Fill => {
-            let before = triangles.len();
-            repairs.turned_faces = turn_by_fill(&kept, grid, &mut triangles);
-            repairs.hidden_faces = before - triangles.len();
-        }
+    let is_closed = is_simple && !repairs.left_open;
+    if !is_closed && places.is_empty() {
+        return Err(BuildError::NotSolid);
     }
+    let Some(shown) = shown else {
+        return Ok(Solid {
+            mesh: surface,
+            places,
+            is_closed,
+            repairs,
+        });
+    };
+    repairs.hidden_faces += surface.triangles().len() - shown.len();
+    if shown.is_empty() {
+        return Err(BuildError::NotSolid);
+    }
+    let mesh = Mesh::new(surface.vertices(), &shown)?;
+    Ok(Solid {
+        // The places of hidden faces are no surface.
+        places: places.with_surface(&mesh, grid),
+        mesh: Cow::Owned(mesh),
+        is_closed,
+        repairs,
+    })
+}
+
+/// The triangles of the mesh, each once and facing outwards, without holes unless they are left
+/// open.
+fn surface<'m>(
+    mesh: &'m Mesh,
+    sign: Sign,
+    grid: &Grid,
+    repairs: &mut Repairs,
+) -> Result<Cow<'m, Mesh>, BuildError> {
+    let mut triangles = without_doubles(mesh);
+    repairs.removed_faces = mesh.triangles().len() - triangles.len();
     if triangles.is_empty() {
         return Err(BuildError::NotSolid);
+    }
+    if sign == Sign::Fill {
+        let before = triangles.len();
+        let kept = Mesh::new(mesh.vertices(), &triangles)?;
+        repairs.turned_faces = turn_by_fill(&kept, grid, &mut triangles);
+        repairs.hidden_faces = before - triangles.len();
+        if triangles.is_empty() {
+            return Err(BuildError::NotSolid);
+        }
+    } else if repairs.removed_faces == 0
+        && Edges::of(&triangles).all_closed()
+        && all_parts_outwards(mesh)
+    {
+        return Ok(Cow::Borrowed(mesh));
+    } else {
+        let kept = Mesh::new(mesh.vertices(), &triangles)?;
+        repairs.turned_faces = turn_by_neighbours(&kept, &mut triangles);
     }
     let mut vertices = mesh.vertices().to_vec();
     let (holes, fans) = fans(&mut vertices, &triangles);
@@ -109,59 +162,11 @@ pub(crate) fn solid(mesh: &Mesh, sign: Sign, grid: &Grid) -> Result<Solid, Build
         repairs.added_faces = fans.len();
         triangles.extend(fans);
     }
-    let surface = if triangles == mesh.triangles() {
-        mesh.clone()
-    } else {
-        Mesh::new(&vertices, &triangles).map_err(BuildError::Mesh)?
-    };
-    let (places, is_simple, shown) = if repairs.left_open {
-        let angle = SolidAngle::new(&surface);
-        let winding = |p| angle.winding(p);
-        let (places, is_simple) = Places::by_generalized_winding(&surface, grid, winding);
-        let shown = || shown_faces(&surface, grid, |p| winding(p) > 0.5);
-        (places, is_simple, (!is_simple).then(shown))
-    } else {
-        let (places, is_simple) = Places::by_winding(&surface, grid);
-        let lines = || Lines::new(&surface);
-        let shown =
-            |lines: Lines<'_>| shown_faces(&surface, grid, |p| lines.winding(p, |_| true) >= 1);
-        (places, is_simple, (!is_simple).then(|| shown(lines())))
-    };
-    let is_closed = is_simple && !repairs.left_open;
-    if !is_closed && places.is_empty() {
-        return Err(BuildError::NotSolid);
-    }
-    let Some(shown) = shown else {
-        return Ok(Solid {
-            mesh: surface,
-            places,
-            is_closed,
-            repairs,
-        });
-    };
-    repairs.hidden_faces += triangles.len() - shown.len();
-    if shown.is_empty() {
-        return Err(BuildError::NotSolid);
-    }
-    let mesh = with_triangles(&surface, &shown)?;
-    Ok(Solid {
-        // The places of hidden faces are no surface.
-        places: places.with_surface(&mesh, grid),
-        mesh,
-        is_closed,
-        repairs,
-    })
+    Ok(Cow::Owned(Mesh::new(&vertices, &triangles)?))
 }
 
 /// Above what share of its area the fans that close a mesh mean that it has no holes but cracks.
 const MOST_CLOSED: f64 = 0.5;
-
-fn with_triangles(mesh: &Mesh, triangles: &[[u32; 3]]) -> Result<Mesh, BuildError> {
-    if triangles == mesh.triangles() {
-        return Ok(mesh.clone());
-    }
-    Mesh::new(mesh.vertices(), triangles).map_err(BuildError::Mesh)
-}
 
 /// All triangles with three corners, each once, whichever way it turns.
 fn without_doubles(mesh: &Mesh) -> Vec<[u32; 3]> {

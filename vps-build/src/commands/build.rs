@@ -1,6 +1,7 @@
 //! `vps-build build`: mesh to asset.
 
 use std::path::PathBuf;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
@@ -169,7 +170,17 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", args.mesh.display());
     let mesh = read_mesh(&args.mesh, args.object.as_deref())?;
     let mesh = mesh.scaled(args.scale).map_err(|e| named(&e))?;
+    let stages = Mutex::new(vec![("read_s", start)]);
     let on_stage = |stage| {
+        let name = match stage {
+            Stage::Voxels => "voxels_s",
+            Stage::Distances => "distances_s",
+            Stage::Points => "points_s",
+            Stage::Tree => "tree_s",
+        };
+        if let Ok(mut stages) = stages.lock() {
+            stages.push((name, Instant::now()));
+        }
         progress.inc(1);
         progress.set_message(match stage {
             Stage::Voxels => "filling voxels",
@@ -181,14 +192,18 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
     // The pool's threads do not share what shows the progress.
     let built = pool.install(|| build(&mesh, &args.options(), &on_stage));
     let built = built.map_err(|e| named(&e))?;
+    let built_at = Instant::now();
     write_asset(&args.output, &built.asset)?;
     progress.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        println!(
-            "{}",
-            for_machines(args, mesh.triangles().len(), &built, seconds)
-        );
+        let mut object = for_machines(args, mesh.triangles().len(), &built, seconds);
+        let stages = stages.into_inner().unwrap_or_default();
+        let ends = stages.iter().skip(1).map(|s| s.1).chain([built_at]);
+        for (&(name, start), end) in stages.iter().zip(ends) {
+            object[name] = json!((end - start).as_secs_f64());
+        }
+        println!("{object}");
     } else if !args.quiet {
         print!(
             "{}",
