@@ -41,6 +41,14 @@ test-with seed:
 no-std:
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
+# Random bytes for the readers and the builder, so many seconds each (needs nightly and cargo-fuzz)
+fuzz seconds="100": build
+    for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done
+    for target in asset obj ply stl off solid; do \
+        mkdir -p fuzz/corpus/$target; \
+        cargo +nightly fuzz run $target fuzz/corpus/$target $(test -d fuzz/seeds/$target && echo fuzz/seeds/$target) -- -max_total_time={{ seconds }} -timeout=20 -rss_limit_mb=2048 -max_len=20000 -print_final_stats=1 2>&1 | tee fuzz/$target.log | grep -E "number_of_executed_units|SUMMARY|panicked|ERROR" | sed "s/^/$target: /"; \
+    done
+
 # Formatting, lints and documentation, warnings being errors
 check:
     cargo fmt --all --check

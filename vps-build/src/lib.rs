@@ -60,5 +60,5 @@ pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use health::Health;
 pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
-pub use read::{MeshFormat, ReadError, read_mesh};
+pub use read::{Fault, MeshFormat, ReadError, parse_mesh, read_mesh};
 pub use solid::{Repairs, Sign};

@@ -125,8 +125,10 @@ pub fn cell_dims(dims: [u32; 3]) -> [u32; 3] {
     dims.map(|n| n.div_ceil(CELL))
 }
 
+/// Saturates: no store has as many values.
 fn product(dims: [u32; 3]) -> usize {
-    dims.iter().map(|&n| n as usize).product()
+    dims.iter()
+        .fold(1, |count: usize, &n| count.saturating_mul(n as usize))
 }
 
 impl<'a> Store<'a> {
@@ -495,6 +497,11 @@ mod tests {
         assert!(refused(vec![group(3, 0)], vec![cell(3, 0)]));
         // A seventh cell, where there are six.
         assert!(refused(vec![group(65, 0)], vec![cell(1, 0), cell(1, 1)]));
+        let none = || Values::Integers(Vec::new().into());
+        assert!(Store::dense([u32::MAX; 3], none()).is_err());
+        assert!(
+            Store::sparse([u32::MAX; 3], Vec::new().into(), Vec::new().into(), none()).is_err()
+        );
         let infinite = Values::Floats(vec![f32::NAN; 17 * 9 * 8].into());
         assert!(matches!(
             Store::dense(DIMS, infinite),

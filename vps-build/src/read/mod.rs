@@ -42,11 +42,14 @@ pub enum ReadError {
     },
 }
 
-/// What is wrong with the content of a file, and in which line if it has lines.
-#[derive(Debug, PartialEq)]
-struct Fault {
-    line: Option<usize>,
-    what: String,
+/// What is wrong with the content of a file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{what}")]
+pub struct Fault {
+    /// The line that is to blame, counted from 1, if it is one.
+    pub line: Option<usize>,
+    /// What is wrong, in one line.
+    pub what: String,
 }
 
 impl Fault {
@@ -132,7 +135,11 @@ pub fn read_mesh(path: &Path, object: Option<&str>) -> Result<Mesh, ReadError> {
     })
 }
 
-fn parse_mesh(bytes: &[u8], format: MeshFormat, object: Option<&str>) -> Result<Mesh, Fault> {
+/// Reads a mesh from the bytes of a file, like [`read_mesh`].
+///
+/// # Errors
+/// When the bytes are not of the format, or hold no sound mesh.
+pub fn parse_mesh(bytes: &[u8], format: MeshFormat, object: Option<&str>) -> Result<Mesh, Fault> {
     if format != MeshFormat::Obj && object.is_some() {
         return Err(Fault::of_file("only the objects of an OBJ file have names"));
     }

@@ -1,0 +1,35 @@
+//! The reader of .vps files takes any bytes, and what it accepts can be asked anything.
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use vps_core::{Asset, Pose3, Query, Vec3};
+use xxhash_rust::xxh3::xxh3_64;
+
+fuzz_target!(|bytes: &[u8]| {
+    // With the right checksum: otherwise nothing but the check would be tested. An allocation of
+    // its own lies at a multiple of 8.
+    let mut aligned = bytes.to_vec();
+    if aligned.len() > 24 {
+        let checksum = xxh3_64(&aligned[24..]).to_le_bytes();
+        aligned[16..24].copy_from_slice(&checksum);
+    }
+    let Ok(asset) = Asset::from_bytes(&aligned) else {
+        return;
+    };
+    let map = &asset.voxelmap;
+    let (trilinear, local) = (map.trilinear(), map.local());
+    let bounds = map.grid().bounds();
+    for pose in [
+        Pose3::IDENTITY,
+        Pose3::from_translation(bounds.extents() * 0.5),
+        Pose3::from_translation(Vec3::splat(1e30)),
+    ] {
+        let query = Query::new(&asset.tree, &trilinear, pose);
+        query.for_each_contact(|_| ());
+        let _ = query.with_margin(0.1).wrench(Vec3::ZERO);
+        let _ = Query::new(&asset.tree, &local, pose).deepest();
+    }
+    let [x, y, z] = map.grid().dims().map(|n| n - 1);
+    let _ = map.center_penetration([x, y, z]);
+});
