@@ -41,6 +41,10 @@ test-with seed:
 no-std:
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
+# Speed, sizes and errors of the builder, into reports/builder
+builder-report: fetch
+    cargo run --locked --release --quiet -p vps-build --example builder_report
+
 # Random bytes for the readers and the builder, so many seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build
     for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done

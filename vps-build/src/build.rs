@@ -21,7 +21,9 @@ pub enum Resolution {
 pub enum PointCount {
     /// As many as this, to within 2 %.
     About(u32),
-    /// As many as there are with this distance in metres between them.
+    /// As many as there are with this distance in metres between any two, but for those on the two
+    /// sides of a thin wall. No place of the surface is further than 2.23 times as much from a
+    /// point.
     Spacing(f64),
 }
 

@@ -149,26 +149,44 @@ impl Mesh {
                 }
             }
         }
+        let mut ball = Self {
+            vertices,
+            triangles,
+        };
         for _ in 0..subdivisions {
-            let mut middles = HashMap::new();
-            let mut finer = Vec::with_capacity(4 * triangles.len());
-            for [a, b, c] in triangles {
-                let mut middle = |a: u32, b: u32| {
-                    *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                        vertices.push(vertices[a as usize].midpoint(vertices[b as usize]));
-                        vertices.len() as u32 - 1
-                    })
-                };
-                let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-                finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-            }
-            triangles = finer;
-            for v in &mut vertices {
+            ball = ball.subdivided();
+            for v in &mut ball.vertices {
                 *v = v.normalize();
             }
         }
-        let vertices: Vec<_> = vertices.iter().map(|v| v.normalize() * radius).collect();
-        Self::new(&vertices, &triangles)
+        let vertices: Vec<_> = ball
+            .vertices
+            .iter()
+            .map(|v| v.normalize() * radius)
+            .collect();
+        Self::new(&vertices, &ball.triangles)
+    }
+
+    /// The same surface in four times as many triangles: each is cut at the middles of its edges.
+    #[must_use]
+    pub fn subdivided(&self) -> Self {
+        let mut vertices = self.vertices.clone();
+        let mut middles = FxHashMap::default();
+        let mut triangles = Vec::with_capacity(4 * self.triangles.len());
+        for &[a, b, c] in &self.triangles {
+            let mut middle = |a: u32, b: u32| {
+                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    vertices.push(vertices[a as usize].midpoint(vertices[b as usize]));
+                    vertices.len() as u32 - 1
+                })
+            };
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        Self {
+            vertices,
+            triangles,
+        }
     }
 
     /// The mesh with all coordinates multiplied.

@@ -6,9 +6,7 @@ use crate::{Aabb, DistanceField, Grid, Store};
 const HALF_DIAGONAL: f32 = 0.866_025_4;
 
 /// How far the values of a [`Voxelmap`] may be from the exact penetration of the voxel centres in
-/// the solid the voxels describe: what cannot be reached from outside through voxels free of
-/// triangles. Closed cavities, and pockets behind an opening narrower than about two voxels, belong
-/// to that solid; on their walls the field jumps.
+/// the solid.
 ///
 /// Queries by the tree find what a test of all points finds for margins up to `band_m` less two
 /// voxels.
@@ -16,8 +14,7 @@ const HALF_DIAGONAL: f32 = 0.866_025_4;
 pub struct Accuracy {
     /// Largest error in metres where the value lies within `band_m` of zero.
     pub near_m: f32,
-    /// Largest error in metres anywhere else. There distances are never closer to zero than the
-    /// exact penetration, but for `near_m`; layers may be.
+    /// Largest error in metres anywhere else.
     pub far_m: f32,
     /// Where near ends, in metres.
     pub band_m: f32,
@@ -182,7 +179,7 @@ impl<'a> Voxelmap<'a> {
         let at_center = if self.grid.bounds().contains(center) {
             let voxel = self.grid.voxel_at(center);
             let stored = self.center_penetration(voxel);
-            let error = if stored < -self.accuracy.band_m {
+            let error = if stored.abs() > self.accuracy.band_m {
                 self.accuracy.far_m
             } else {
                 self.accuracy.near_m
@@ -195,7 +192,7 @@ impl<'a> Voxelmap<'a> {
         };
         let mut bound = at_center + radius + sampling_error;
         if bound > 0.0 {
-            // Deep values may be given too deep by as much as this.
+            // Points deep in the solid may be given deeper than they are by as much as this.
             bound += self.accuracy.far_m;
         }
         bound

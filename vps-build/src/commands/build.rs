@@ -203,6 +203,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
         for (&(name, start), end) in stages.iter().zip(ends) {
             object[name] = json!((end - start).as_secs_f64());
         }
+        object["peak_memory_bytes"] = json!(peak_memory());
         println!("{object}");
     } else if !args.quiet {
         print!(
@@ -282,6 +283,16 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         return way.into();
     }
     format!("{way}, after repairs: {}", done.join(", "))
+}
+
+/// The most memory this process has had, where the system tells (Linux).
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kib * 1024)
 }
 
 fn for_machines(

@@ -3,7 +3,9 @@
 use crate::support::{asset, bumpy_mesh, direction, encoding, exact_penetration, pose, vector};
 use glamx::DVec3;
 use proptest::prelude::*;
-use vps_build::{BuildOptions, Encoding, Mesh, PointCount, Resolution, build};
+use vps_build::{
+    BuildOptions, ClosestPoints, Density, Encoding, Mesh, PointCount, Resolution, build,
+};
 use vps_core::conformance::check_ball;
 use vps_core::{
     Asset, Ball, Contact, Cuboid, DistanceField, HalfSpace, Pose3, Query, Vec3, Voxelmap, encode,
@@ -128,12 +130,26 @@ proptest! {
 
     #[test]
     fn voxel_values_are_within_their_error(
-        mesh in bumpy_mesh(), encoding in encoding(),
-        at in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 60),
+        mesh in bumpy_mesh(), encoding in encoding(), is_dense in any::<bool>(),
+        walk in prop::bool::weighted(0.2),
+        at in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 200),
     ) {
-        let asset = asset(&mesh, 10, encoding);
+        let options = BuildOptions {
+            resolution: Resolution::VoxelsAlongLongest(22),
+            margin: 12,
+            points: PointCount::About(10),
+            encoding,
+            density: if is_dense { Density::Dense } else { Density::Sparse },
+            closest_points: if walk { ClosestPoints::GradientWalk } else { ClosestPoints::Exact },
+            ..BuildOptions::default()
+        };
+        let asset = build(&mesh, &options, &|_| ()).unwrap().asset;
         let map = &asset.voxelmap;
+        prop_assert_eq!(map.store().is_dense(), is_dense);
         let accuracy = map.accuracy();
+        if !walk && encoding != Encoding::Layers && map.sigma() < 0.5 * map.grid().voxel_size() {
+            prop_assert!(accuracy.far_m <= 1.0001 * map.grid().voxel_size());
+        }
         let dims = map.grid().dims();
         for at in at {
             let voxel = [0, 1, 2].map(|a| at[a].index(dims[a] as usize) as u32);
@@ -145,6 +161,39 @@ proptest! {
             } else {
                 prop_assert!(off <= accuracy.far_m, "{voxel:?}: {stored}, exact {exact}");
             }
+        }
+    }
+
+    /// Points keep their distance, and every place of the surface has one near: a candidate lies no
+    /// further than the diagonal of a sampling voxel, √3 / √2 of the spacing, and what kept it out
+    /// no further than the spacing from there.
+    #[test]
+    fn points_are_spread_evenly(
+        mesh in bumpy_mesh(), spacing in 0.04..0.15_f64,
+        at in prop::collection::vec((0..1280_usize, 0.0..1.0_f64, 0.0..1.0_f64), 60),
+    ) {
+        let options = BuildOptions {
+            resolution: Resolution::VoxelsAlongLongest(20),
+            points: PointCount::Spacing(spacing),
+            ..BuildOptions::default()
+        };
+        let tree = build(&mesh, &options, &|_| ()).unwrap().asset.tree;
+        let points: Vec<_> = (0..tree.point_count()).map(|i| tree.point(i).as_dvec3()).collect();
+        for i in 0..points.len() {
+            for j in 0..i {
+                // Those on the two sides of a thin wall are no neighbours.
+                if tree.normal(i).dot(tree.normal(j)) > 0.0 {
+                    prop_assert!(points[i].distance(points[j]) > 0.999 * spacing);
+                }
+            }
+        }
+        for (t, u, v) in at {
+            let [a, b, c] = mesh.triangles()[t].map(|v| mesh.vertices()[v as usize]);
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let place = a + (b - a) * u + (c - a) * v;
+            let distances = points.iter().map(|p| p.distance(place));
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            prop_assert!(nearest <= 2.23 * spacing, "{place} is {nearest} m from the next point");
         }
     }
 
