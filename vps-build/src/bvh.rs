@@ -4,8 +4,7 @@
 //! the part can be up to second order, where a box or a ball is wrong by half of its size: for a
 //! point far away, that is the difference between a few triangles and hundreds.
 
-use glamx::DVec3;
-use glamx::Vec4;
+use glamx::{DVec3, Vec4};
 use rayon::prelude::*;
 use vps_core::Vec3;
 
@@ -15,6 +14,7 @@ use crate::triangle::closest_point;
 /// Discs are tested four at a time, and this many fours make a node.
 const FOURS: usize = 4;
 
+/// How many children a node has.
 const WIDTH: usize = 4 * FOURS;
 
 /// Four discs, coordinate by coordinate.
@@ -104,8 +104,8 @@ impl Bvh {
             (distance * distance * (1.0 + 1e-5)) as f32 + f32::MIN_POSITIVE
         };
         let mut limit = pruning_limit(best.0);
-        // Each level leaves three siblings at most, and halves the triangles twice.
-        let mut stack = [(0.0_f32, 0_u32); 128];
+        // Each level leaves the siblings of one node, and 2^31 triangles are no more than 8 levels.
+        let mut stack = [(0.0_f32, 0_u32); 8 * WIDTH];
         let mut top = 1;
         while top > 0 {
             top -= 1;
@@ -272,57 +272,48 @@ fn bounds(items: &[Item]) -> (Vec3, Vec3) {
 fn subtree(mesh: &Mesh, items: &mut [Item], first: usize, nodes: &mut Vec<Node>) {
     let root = nodes.len();
     nodes.push(Node::EMPTY);
-    let mut quarters = vec![items];
-    while quarters.len() < WIDTH {
-        quarters = quarters
-            .into_iter()
-            .flat_map(|part| {
-                let (a, b) = halve(part);
-                [a, b]
-            })
-            .collect();
+    let mut parts = vec![items];
+    while parts.len() < WIDTH {
+        parts = parts.into_iter().flat_map(halve).collect();
     }
-    let large = quarters[0].len() >= PARALLEL;
+    let is_large = parts[0].len() >= PARALLEL;
     let mut start = first;
-    let mut below: Vec<_> = quarters
-        .into_iter()
-        .map(|q| {
-            let at = start;
-            start += q.len();
-            (at, q, Vec::new())
-        })
-        .collect();
-    if large {
-        below
-            .par_iter_mut()
-            .for_each(|(first, quarter, nodes)| subtree(mesh, quarter, *first, nodes));
+    let with_start = |part: &'_ &mut [Item]| {
+        start += part.len();
+        start - part.len()
+    };
+    let starts: Vec<usize> = parts.iter().map(with_start).collect();
+    let mut subtrees = vec![Vec::new(); WIDTH];
+    if is_large {
+        let parts = parts.par_iter_mut().zip(&starts).zip(&mut subtrees);
+        parts.for_each(|((part, &start), nodes)| subtree(mesh, part, start, nodes));
     }
-    for (lane, (first, quarter, mut made)) in below.into_iter().enumerate() {
-        if quarter.is_empty() {
+    for (lane, ((part, start), mut made)) in parts.into_iter().zip(starts).zip(subtrees).enumerate()
+    {
+        if part.is_empty() {
             continue;
         }
-        let child = match quarter {
-            [_] => TRIANGLE | first as u32,
-            _ => nodes.len() as u32,
+        let offset = nodes.len() as u32;
+        nodes[root].discs[lane / 4].set(lane % 4, &Disc::around(mesh, part));
+        nodes[root].children[lane] = match part {
+            [_] => TRIANGLE | start as u32,
+            _ => offset,
         };
-        nodes[root].discs[lane / 4].set(lane % 4, &Disc::around(mesh, quarter));
-        nodes[root].children[lane] = child;
-        if large {
-            let offset = nodes.len() as u32;
+        if is_large {
             for child in made.iter_mut().flat_map(|node| &mut node.children) {
                 if *child & TRIANGLE == 0 {
                     *child += offset;
                 }
             }
             nodes.append(&mut made);
-        } else if quarter.len() > 1 {
-            subtree(mesh, quarter, first, nodes);
+        } else if part.len() > 1 {
+            subtree(mesh, part, start, nodes);
         }
     }
 }
 
 /// Two halves along the axis on which the triangles spread furthest.
-fn halve(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
+fn halve(items: &mut [Item]) -> [&mut [Item]; 2] {
     let half = items.len().div_ceil(2);
     if half < items.len() {
         let nothing = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -336,7 +327,7 @@ fn halve(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
             by_place.then(a.triangle.cmp(&b.triangle))
         });
     }
-    items.split_at_mut(half)
+    items.split_at_mut(half).into()
 }
 
 #[cfg(test)]

@@ -2,12 +2,13 @@
 
 use glamx::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 use vps_core::Grid;
 
 use crate::Mesh;
 use crate::bvh::{Bvh, Closest};
 use crate::layers::layers;
-use crate::places::{AROUND, Place, Places};
+use crate::places::{AROUND, Places};
 use crate::triangle::closest_point;
 
 /// Exact penetrations, each found when it is asked for.
@@ -66,61 +67,83 @@ impl<'a> Exact<'a> {
 /// one.
 pub(crate) fn by_gradient_walk(mesh: &Mesh, grid: &Grid, places: &Places) -> Vec<f32> {
     let layers = layers(grid, places);
-    let dims = grid.dims().map(i64::from);
-    let layer = |at: [i64; 3]| {
-        let inside = [0, 1, 2].map(|a| at[a].clamp(0, dims[a] - 1) as u32);
-        i64::from(layers[grid.index(inside)].unsigned_abs())
-    };
-    let walk = |mut at: [i64; 3]| {
-        while layer(at) > 0 {
-            let slope = [0, 1, 2].map(|a| {
-                let (mut ahead, mut behind) = (at, at);
-                ahead[a] += 1;
-                behind[a] -= 1;
-                layer(behind) - layer(ahead)
-            });
-            // The neighbour that lies closest to the way down, among those a layer lower.
-            let downhill = |step: &[i64; 3]| {
-                let next = [0, 1, 2].map(|a| at[a] + step[a]);
-                let in_grid = (0..3).all(|a| (0..dims[a]).contains(&next[a]));
-                in_grid && layer(next) < layer(at)
-            };
-            let steepness = |step: &[i64; 3]| {
-                let along: i64 = (0..3).map(|a| step[a] * slope[a]).sum();
-                let length: i64 = step.iter().map(|s| s * s).sum();
-                along as f64 / (length as f64).sqrt()
-            };
-            let step = AROUND
-                .map(|step| step.map(i64::from))
-                .into_iter()
-                .filter(downhill)
-                .max_by(|a, b| steepness(a).total_cmp(&steepness(b)))
-                .expect("each layer lies next to a lower one");
-            at = [0, 1, 2].map(|a| at[a] + step[a]);
-        }
-        at.map(|c| c as u32)
-    };
-    let exact = Exact::new(mesh, grid, places);
-    let [nx, ny, _] = grid.dims();
-    let mut all = vec![0.0; grid.voxel_count()];
-    all.par_chunks_mut(nx as usize)
-        .enumerate()
-        .for_each(|(row, penetrations)| {
-            let mut guess = 0;
-            let (y, z) = (row as u32 % ny, row as u32 / ny);
-            for (x, penetration) in (0..nx).zip(penetrations) {
-                let surface = walk([x, y, z].map(i64::from));
-                exact.at(surface, &mut guess);
-                let center = grid.center([x, y, z]).as_dvec3();
-                let closest = closest_point(mesh.corners(guess as usize), center);
-                let distance = closest.distance(center);
-                let outside = match places.of([x, y, z]) {
-                    Place::Outside => true,
-                    Place::Inside => false,
-                    Place::Surface => !places.is_inside([x, y, z]),
-                };
-                *penetration = if outside { -distance } else { distance } as f32;
+    let [nx, ny, _] = grid.dims().map(|n| n as usize);
+    let voxel = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)].map(|c| c as u32);
+    // The surface voxel each walk ends at. Walks that meet go on as one.
+    let mut ends = vec![UNKNOWN; grid.voxel_count()];
+    let mut way = Vec::new();
+    for start in 0..ends.len() {
+        let mut at = start;
+        while ends[at] == UNKNOWN {
+            if layers[at] == 0 {
+                ends[at] = at as u32;
+                break;
             }
-        });
-    all
+            way.push(at);
+            at = grid.index(next_lower(&layers, grid, voxel(at)));
+        }
+        let end = ends[at];
+        for passed in way.drain(..) {
+            ends[passed] = end;
+        }
+    }
+    // The triangle closest to each surface voxel, in place of the voxel.
+    let exact = Exact::new(mesh, grid, places);
+    let surface: Vec<u32> = (0..ends.len() as u32)
+        .filter(|&i| layers[i as usize] == 0)
+        .collect();
+    let closest = |&i: &u32| {
+        let mut guess = 0;
+        exact.at(voxel(i as usize), &mut guess);
+        guess
+    };
+    let triangles: Vec<u32> = surface.par_iter().map(closest).collect();
+    let numbers: FxHashMap<u32, u32> = surface.into_iter().zip(triangles).collect();
+    let penetration = |(i, end): (usize, &mut u32)| {
+        let center = grid.center(voxel(i)).as_dvec3();
+        let triangle = numbers[end] as usize;
+        let distance = closest_point(mesh.corners(triangle), center).distance(center);
+        let penetration = if places.is_inside(voxel(i)) {
+            distance
+        } else {
+            -distance
+        };
+        // In its place again: the numbers are as long as the penetrations.
+        *end = (penetration as f32).to_bits();
+    };
+    ends.par_iter_mut().enumerate().for_each(penetration);
+    bytemuck::cast_vec(ends)
+}
+
+/// No walk has been here.
+const UNKNOWN: u32 = u32::MAX;
+
+/// The neighbour one layer lower that lies closest to the gradient of the layers, for a voxel that
+/// is not on the surface.
+fn next_lower(layers: &[i16], grid: &Grid, voxel: [u32; 3]) -> [u32; 3] {
+    let dims = grid.dims();
+    let step = |step: [i32; 3]| {
+        let next = [0, 1, 2].map(|a| voxel[a].wrapping_add_signed(step[a]));
+        (0..3).all(|a| next[a] < dims[a]).then_some(next)
+    };
+    let layer = |at: [u32; 3]| i32::from(layers[grid.index(at)].unsigned_abs());
+    let here = layer(voxel);
+    let slope = [0, 1, 2].map(|axis| {
+        let mut way = [0; 3];
+        way[axis] = 1;
+        let ahead = step(way).map_or(here, layer);
+        let behind = step(way.map(|w: i32| -w)).map_or(here, layer);
+        behind - ahead
+    });
+    let mut best = (f32::NEG_INFINITY, voxel);
+    for way in AROUND {
+        let Some(next) = step(way) else { continue };
+        let along: i32 = (0..3).map(|a| way[a] * slope[a]).sum();
+        let length: i32 = way.iter().map(|w| w * w).sum();
+        let steepness = along as f32 / (length as f32).sqrt();
+        if steepness > best.0 && layer(next) < here {
+            best = (steepness, next);
+        }
+    }
+    best.1
 }

@@ -8,48 +8,57 @@ use crate::places::{Place, Places};
 /// one. A voxel is one layer further than the closest of the 26 around it.
 pub(crate) fn layers(grid: &Grid, places: &Places) -> Vec<i16> {
     const UNKNOWN: i16 = i16::MAX;
-    let [nx, ny, nz] = grid.dims().map(|n| n as i64);
-    let voxel = |i: usize| {
-        let i = i as i64;
-        [i % nx, i / nx % ny, i / (nx * ny)].map(|c| c as u32)
+    let [nx, ny, nz] = grid.dims();
+    let voxels =
+        || (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let start = |voxel| match places.of(voxel) {
+        Place::Surface => 0,
+        Place::Inside | Place::Outside => UNKNOWN,
     };
-    let is_surface = |i: usize| places.of(voxel(i)) == Place::Surface;
-    let mut layers: Vec<i16> = (0..grid.voxel_count())
-        .map(|i| if is_surface(i) { 0 } else { UNKNOWN })
-        .collect();
+    let mut layers: Vec<i16> = voxels().map(start).collect();
     // Two sweeps, each over the half of the neighbours that come before in its order.
-    let mut before = Vec::new();
-    for dz in -1..=0_i64 {
-        for dy in -1..=1_i64 {
-            for dx in -1..=1_i64 {
-                if (dz, dy, dx) < (0, 0, 0) {
-                    before.push((dx, dy, dz));
+    let [nx, ny, nz] = grid.dims().map(|n| n as usize);
+    let rows: Vec<(usize, usize)> = (0..nz).flat_map(|z| (0..ny).map(move |y| (y, z))).collect();
+    let mut least = vec![UNKNOWN; nx];
+    let mut sweep = |rows: &mut dyn Iterator<Item = &(usize, usize)>, ahead: bool| {
+        for &(y, z) in rows {
+            least.fill(UNKNOWN);
+            let mut take = |y: Option<usize>, z: Option<usize>| {
+                if let (Some(y), Some(z)) = (y.filter(|&y| y < ny), z.filter(|&z| z < nz)) {
+                    let row = &layers[(z * ny + y) * nx..][..nx];
+                    for (least, &layer) in least.iter_mut().zip(row) {
+                        *least = layer.min(*least);
+                    }
                 }
-            }
-        }
-    }
-    for direction in [1, -1] {
-        for step in 0..nx * ny * nz {
-            let i = if direction == 1 {
-                step
-            } else {
-                nx * ny * nz - 1 - step
             };
-            let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
-            let mut layer = layers[i as usize];
-            for &(dx, dy, dz) in &before {
-                let (x, y, z) = (x + direction * dx, y + direction * dy, z + direction * dz);
-                let in_grid = (0..nx).contains(&x) && (0..ny).contains(&y) && (0..nz).contains(&z);
-                if in_grid {
-                    let neighbour = layers[((z * ny + y) * nx + x) as usize];
-                    layer = layer.min(neighbour.saturating_add(1));
-                }
+            let (before, after) = (|c: usize| c.checked_sub(1), |c: usize| Some(c + 1));
+            let last_z = if ahead { before(z) } else { after(z) };
+            take(before(y), last_z);
+            take(Some(y), last_z);
+            take(after(y), last_z);
+            take(if ahead { before(y) } else { after(y) }, Some(z));
+            let row = &mut layers[(z * ny + y) * nx..][..nx];
+            for x in 0..nx {
+                let near = &least[x.saturating_sub(1)..(x + 2).min(nx)];
+                let near = near.iter().fold(UNKNOWN, |a, &b| a.min(b));
+                row[x] = row[x].min(near.saturating_add(1));
             }
-            layers[i as usize] = layer;
+            let mut last = UNKNOWN;
+            let mut along = |layer: &mut i16| {
+                *layer = last.saturating_add(1).min(*layer);
+                last = *layer;
+            };
+            if ahead {
+                row.iter_mut().for_each(&mut along);
+            } else {
+                row.iter_mut().rev().for_each(&mut along);
+            }
         }
-    }
-    for (i, layer) in layers.iter_mut().enumerate() {
-        if places.of(voxel(i)) == Place::Outside {
+    };
+    sweep(&mut rows.iter(), true);
+    sweep(&mut rows.iter().rev(), false);
+    for (layer, voxel) in layers.iter_mut().zip(voxels()) {
+        if places.of(voxel) == Place::Outside {
             *layer = -*layer;
         }
     }
