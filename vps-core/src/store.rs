@@ -45,13 +45,6 @@ impl Values<'_> {
         }
     }
 
-    fn get(&self, index: usize) -> f32 {
-        match self {
-            Self::Integers(values) => f32::from(values[index]),
-            Self::Floats(values) => values[index],
-        }
-    }
-
     #[cfg(feature = "alloc")]
     fn into_owned(self) -> Values<'static> {
         match self {
@@ -110,14 +103,17 @@ pub struct Store<'a> {
 #[derive(Clone, Debug)]
 enum Layout<'a> {
     Dense,
-    Sparse {
-        groups: Storage<'a, CellGroup>,
-        cells: Storage<'a, RefinedCell>,
-        cell_dims: [u32; 3],
-        /// Where the values of refined cells start, and those of bricks.
-        middles: usize,
-        bricks: usize,
-    },
+    Sparse(Sparse<'a>),
+}
+
+#[derive(Clone, Debug)]
+struct Sparse<'a> {
+    groups: Storage<'a, CellGroup>,
+    cells: Storage<'a, RefinedCell>,
+    cell_dims: [u32; 3],
+    /// Where the values of refined cells start, and those of bricks.
+    middles: usize,
+    bricks: usize,
 }
 
 /// How many cells there are along each axis.
@@ -181,13 +177,13 @@ impl<'a> Store<'a> {
         }
         let middles = product(cell_dims.map(|n| n + 1));
         let bricks = middles + refined * MIDDLE_VALUES;
-        let layout = Layout::Sparse {
+        let layout = Layout::Sparse(Sparse {
             groups,
             cells,
             cell_dims,
             middles,
             bricks,
-        };
+        });
         Self {
             dims,
             values,
@@ -225,7 +221,7 @@ impl<'a> Store<'a> {
     pub fn cells(&self) -> (&[CellGroup], &[RefinedCell]) {
         match &self.layout {
             Layout::Dense => (&[], &[]),
-            Layout::Sparse { groups, cells, .. } => (groups, cells),
+            Layout::Sparse(sparse) => (&sparse.groups, &sparse.cells),
         }
     }
 
@@ -242,112 +238,27 @@ impl<'a> Store<'a> {
 
     /// The value of a voxel.
     pub fn value(&self, voxel: [u32; 3]) -> f32 {
-        match &self.layout {
-            Layout::Dense => self.dense_value(voxel),
-            Layout::Sparse { .. } => {
-                let cell = voxel.map(|c| c / CELL);
-                self.value_in(cell, self.refined(cell), voxel)
-            }
+        match &self.values {
+            Values::Integers(values) => self.read(values).value(voxel),
+            Values::Floats(values) => self.read(values).value(voxel),
         }
     }
 
     /// The values of the voxel `corner` and its next neighbours along each axis, interpolated at
     /// `t`, between 0 and 1. The neighbours must be in the grid, or `t` be 0 towards them.
     pub(crate) fn interpolated(&self, corner: [u32; 3], t: Vec3) -> f32 {
-        let next = [0, 1, 2].map(|a| (corner[a] + 1).min(self.dims[a] - 1));
-        let eight = |value: &dyn Fn([u32; 3]) -> f32| {
-            let at = |i: usize| {
-                let pick = |a: usize| if i >> a & 1 == 1 { next[a] } else { corner[a] };
-                value([pick(0), pick(1), pick(2)])
-            };
-            lerp_eight(core::array::from_fn(at), t)
-        };
-        if self.is_dense() {
-            return eight(&|voxel| self.dense_value(voxel));
+        match &self.values {
+            Values::Integers(values) => self.read(values).interpolated(corner, t),
+            Values::Floats(values) => self.read(values).interpolated(corner, t),
         }
-        let cell = corner.map(|c| c / CELL);
-        if next.map(|c| c / CELL) != cell {
-            return eight(&|voxel| self.value(voxel));
-        }
-        let refined = self.refined(cell);
-        if refined.is_none() {
-            // Trilinear between the voxels of a trilinear cell: the cell's own function.
-            let local = Vec3::from_array(corner.map(|c| (c % CELL) as f32)) + t;
-            return self.coarse(cell, local / CELL as f32);
-        }
-        eight(&|voxel| self.value_in(cell, refined, voxel))
     }
 
-    /// The number of a cell among the refined ones, if it is one of them.
-    fn refined(&self, cell: [u32; 3]) -> Option<usize> {
-        let Layout::Sparse {
-            groups, cell_dims, ..
-        } = &self.layout
-        else {
-            return None;
-        };
-        let [nx, ny, _] = cell_dims.map(|n| n as usize);
-        let [x, y, z] = cell.map(|c| c as usize);
-        let index = (z * ny + y) * nx + x;
-        let group = groups[index / 64];
-        let bit = 1_u64 << (index % 64);
-        let before = (group.refined & (bit - 1)).count_ones();
-        (group.refined & bit != 0).then_some((group.before + before) as usize)
-    }
-
-    /// The value of a voxel in a cell, given the cell's number among the refined ones.
-    fn value_in(&self, cell: [u32; 3], refined: Option<usize>, voxel: [u32; 3]) -> f32 {
-        let local = voxel.map(|c| c % CELL);
-        let (
-            Some(refined),
-            Layout::Sparse {
-                cells,
-                middles,
-                bricks,
-                ..
-            },
-        ) = (refined, &self.layout)
-        else {
-            let t = Vec3::from_array(local.map(|c| c as f32)) / CELL as f32;
-            return self.coarse(cell, t);
-        };
-        let cell = cells[refined];
-        let [x, y, z] = local.map(|c| c as usize);
-        let bit = 1_u64 << (((z / 2) * 4 + y / 2) * 4 + x / 2);
-        if cell.bricks & bit != 0 {
-            let before = (cell.bricks & (bit - 1)).count_ones();
-            let brick = (cell.first + before) as usize;
-            let within = ((z % 2) * 2 + y % 2) * 2 + x % 2;
-            return self.values.get(bricks + brick * BRICK_VALUES + within);
+    fn read<'r, T>(&'r self, values: &'r [T]) -> Reader<'r, T> {
+        Reader {
+            dims: self.dims,
+            layout: &self.layout,
+            values,
         }
-        let first = middles + refined * MIDDLE_VALUES + ((z / 4) * 3 + y / 4) * 3 + x / 4;
-        let at = |i: usize| {
-            self.values
-                .get(first + (i & 1) + (i >> 1 & 1) * 3 + (i >> 2) * 9)
-        };
-        let t = Vec3::from_array(local.map(|c| (c % 4) as f32)) / 4.0;
-        lerp_eight(core::array::from_fn(at), t)
-    }
-
-    /// The lattice of all cells, interpolated at `t` in one of them.
-    fn coarse(&self, cell: [u32; 3], t: Vec3) -> f32 {
-        let Layout::Sparse { cell_dims, .. } = &self.layout else {
-            return 0.0;
-        };
-        let [nx, ny, _] = cell_dims.map(|n| n as usize + 1);
-        let [x, y, z] = cell.map(|c| c as usize);
-        let first = (z * ny + y) * nx + x;
-        let at = |i: usize| {
-            let (dx, dy, dz) = (i & 1, i >> 1 & 1, i >> 2);
-            self.values.get(first + (dz * ny + dy) * nx + dx)
-        };
-        lerp_eight(core::array::from_fn(at), t)
-    }
-
-    fn dense_value(&self, [x, y, z]: [u32; 3]) -> f32 {
-        let [nx, ny, _] = self.dims.map(|n| n as usize);
-        let index = (z as usize * ny + y as usize) * nx + x as usize;
-        self.values.get(index)
     }
 
     #[cfg(feature = "alloc")]
@@ -357,22 +268,230 @@ impl<'a> Store<'a> {
             values: self.values.into_owned(),
             layout: match self.layout {
                 Layout::Dense => Layout::Dense,
-                Layout::Sparse {
-                    groups,
-                    cells,
-                    cell_dims,
-                    middles,
-                    bricks,
-                } => Layout::Sparse {
-                    groups: groups.into_owned(),
-                    cells: cells.into_owned(),
-                    cell_dims,
-                    middles,
-                    bricks,
-                },
+                Layout::Sparse(sparse) => Layout::Sparse(Sparse {
+                    groups: sparse.groups.into_owned(),
+                    cells: sparse.cells.into_owned(),
+                    ..sparse
+                }),
             },
         }
     }
+}
+
+/// A store whose values are known to be of one kind.
+#[derive(Clone, Copy)]
+struct Reader<'r, T> {
+    dims: [u32; 3],
+    layout: &'r Layout<'r>,
+    values: &'r [T],
+}
+
+/// The parts of a sparse store.
+#[derive(Clone, Copy)]
+struct Parts<'r> {
+    groups: &'r [CellGroup],
+    cells: &'r [RefinedCell],
+    cell_dims: [u32; 3],
+    middles: usize,
+    bricks: usize,
+}
+
+impl<T: Copy + Into<f32>> Reader<'_, T> {
+    fn get(&self, index: usize) -> f32 {
+        self.values[index].into()
+    }
+
+    fn value(&self, voxel: [u32; 3]) -> f32 {
+        match self.layout {
+            Layout::Dense => self.get(linear(self.dims, voxel)),
+            Layout::Sparse(sparse) => {
+                let parts = sparse.parts();
+                let cell = voxel.map(|c| c / CELL);
+                self.value_in(parts, cell, parts.refined(cell), voxel)
+            }
+        }
+    }
+
+    fn interpolated(&self, corner: [u32; 3], t: Vec3) -> f32 {
+        let next = [0, 1, 2].map(|a| (corner[a] + 1).min(self.dims[a] - 1));
+        let at = |i: usize| {
+            let pick = |a: usize| if i >> a & 1 == 1 { next[a] } else { corner[a] };
+            [pick(0), pick(1), pick(2)]
+        };
+        let Layout::Sparse(sparse) = self.layout else {
+            let value = |i| self.get(linear(self.dims, at(i)));
+            return lerp_eight(core::array::from_fn(value), t);
+        };
+        let parts = sparse.parts();
+        let cell = corner.map(|c| c / CELL);
+        let refined = parts.refined(cell);
+        let last = next.map(|c| c / CELL);
+        if last == cell {
+            let Some(number) = refined else {
+                // Trilinear between the voxels of a trilinear cell: the cell's own function.
+                let local = Vec3::from_array(corner.map(|c| (c % CELL) as f32)) + t;
+                return self.coarse(parts, cell, local / CELL as f32);
+            };
+            if let Some(values) = self.eight_stored(parts, number, corner, next) {
+                return lerp_eight(values, t);
+            }
+            if let Some(value) = self.in_octant(parts, number, corner, next, t) {
+                return value;
+            }
+            let value = |i| self.value_in(parts, cell, refined, at(i));
+            return lerp_eight(core::array::from_fn(value), t);
+        }
+        // Voxels on both sides of a face between cells, or around an edge or a corner.
+        let mut known = (cell, refined);
+        let mut found = (last, parts.refined(last));
+        let value = |i| {
+            let voxel = at(i);
+            let its_cell = voxel.map(|c| c / CELL);
+            if its_cell != known.0 {
+                core::mem::swap(&mut known, &mut found);
+                if its_cell != known.0 {
+                    known = (its_cell, parts.refined(its_cell));
+                }
+            }
+            self.value_in(parts, its_cell, known.1, voxel)
+        };
+        lerp_eight(core::array::from_fn(value), t)
+    }
+
+    /// The eight values between two voxels of a refined cell, if all are stored.
+    #[inline]
+    fn eight_stored(
+        &self,
+        parts: Parts<'_>,
+        number: usize,
+        low: [u32; 3],
+        high: [u32; 3],
+    ) -> Option<[f32; 8]> {
+        let cell = parts.cells[number];
+        let [x, y, z] = low.map(|c| (c % CELL) as usize);
+        let [x1, y1, z1] = high.map(|c| (c % CELL) as usize);
+        // Bricks next to each other along x are so among those stored.
+        let pair = 1_u64 << (x / 2) | 1_u64 << (x1 / 2);
+        let mut values = [0.0; 8];
+        for (i, (y, z)) in [(y, z), (y1, z), (y, z1), (y1, z1)].into_iter().enumerate() {
+            let row = ((z / 2) * 4 + y / 2) * 4;
+            if cell.bricks >> row & pair != pair {
+                return None;
+            }
+            let before = (cell.bricks & ((1 << (row + x / 2)) - 1)).count_ones();
+            let first = parts.bricks + (cell.first + before) as usize * BRICK_VALUES;
+            let within = first + ((z % 2) * 2 + y % 2) * 2;
+            values[2 * i] = self.get(within + x % 2);
+            values[2 * i + 1] = self.get(within + (x1 / 2 - x / 2) * BRICK_VALUES + x1 % 2);
+        }
+        Some(values)
+    }
+
+    /// The value of a voxel in a cell, given the cell's number among the refined ones.
+    #[inline]
+    fn value_in(
+        &self,
+        parts: Parts<'_>,
+        cell: [u32; 3],
+        refined: Option<usize>,
+        voxel: [u32; 3],
+    ) -> f32 {
+        let local = voxel.map(|c| c % CELL);
+        let Some(refined) = refined else {
+            let t = Vec3::from_array(local.map(|c| c as f32)) / CELL as f32;
+            return self.coarse(parts, cell, t);
+        };
+        let cell = parts.cells[refined];
+        let [x, y, z] = local.map(|c| c as usize);
+        let bit = 1_u64 << (((z / 2) * 4 + y / 2) * 4 + x / 2);
+        if cell.bricks & bit != 0 {
+            let before = (cell.bricks & (bit - 1)).count_ones();
+            let brick = (cell.first + before) as usize;
+            let within = ((z % 2) * 2 + y % 2) * 2 + x % 2;
+            return self.get(parts.bricks + brick * BRICK_VALUES + within);
+        }
+        let t = Vec3::from_array(local.map(|c| (c % 4) as f32)) / 4.0;
+        self.middle(parts, refined, [x / 4, y / 4, z / 4], t)
+    }
+
+    /// An octant of a refined cell, interpolated at `t`.
+    #[inline]
+    fn middle(&self, parts: Parts<'_>, number: usize, [x, y, z]: [usize; 3], t: Vec3) -> f32 {
+        let first = parts.middles + number * MIDDLE_VALUES + (z * 3 + y) * 3 + x;
+        let at = |i: usize| self.get(first + (i & 1) + (i >> 1 & 1) * 3 + (i >> 2) * 9);
+        lerp_eight(core::array::from_fn(at), t)
+    }
+
+    /// Between two voxels of a refined cell none of whose bricks are stored, and which lie in one
+    /// octant: the octant's own function.
+    #[inline]
+    fn in_octant(
+        &self,
+        parts: Parts<'_>,
+        number: usize,
+        low: [u32; 3],
+        high: [u32; 3],
+        t: Vec3,
+    ) -> Option<f32> {
+        let octant = low.map(|c| c % CELL / 4);
+        if high.map(|c| c % CELL / 4) != octant {
+            return None;
+        }
+        let [x, y, z] = octant.map(|c| c as usize);
+        // The 2 x 2 x 2 bricks of an octant.
+        let bricks = 0x0033_0033_u64 << ((z * 8 + y * 2) * 4 + x * 2);
+        if parts.cells[number].bricks & bricks != 0 {
+            return None;
+        }
+        let local = Vec3::from_array(low.map(|c| (c % 4) as f32)) + t;
+        Some(self.middle(parts, number, [x, y, z], local / 4.0))
+    }
+
+    /// The lattice of all cells, interpolated at `t` in one of them.
+    fn coarse(&self, parts: Parts<'_>, cell: [u32; 3], t: Vec3) -> f32 {
+        let [nx, ny, _] = parts.cell_dims.map(|n| n as usize + 1);
+        let first = linear(parts.cell_dims.map(|n| n + 1), cell);
+        let at = |i: usize| {
+            let (dx, dy, dz) = (i & 1, i >> 1 & 1, i >> 2);
+            self.get(first + (dz * ny + dy) * nx + dx)
+        };
+        lerp_eight(core::array::from_fn(at), t)
+    }
+}
+
+impl Sparse<'_> {
+    fn parts(&self) -> Parts<'_> {
+        Parts {
+            groups: &self.groups,
+            cells: &self.cells,
+            cell_dims: self.cell_dims,
+            middles: self.middles,
+            bricks: self.bricks,
+        }
+    }
+}
+
+impl Parts<'_> {
+    /// The number of a cell among the refined ones, if it is one of them.
+    #[inline]
+    fn refined(&self, cell: [u32; 3]) -> Option<usize> {
+        let index = linear(self.cell_dims, cell);
+        let group = self.groups[index / 64];
+        let bit = 1_u64 << (index % 64);
+        if group.refined & bit == 0 {
+            return None;
+        }
+        let before = (group.refined & (bit - 1)).count_ones();
+        Some((group.before + before) as usize)
+    }
+}
+
+/// Position in an array with x fastest, then y, then z.
+#[inline]
+fn linear(dims: [u32; 3], at: [u32; 3]) -> usize {
+    let [nx, ny, _] = dims.map(|n| n as usize);
+    let [x, y, z] = at.map(|c| c as usize);
+    (z * ny + y) * nx + x
 }
 
 /// Trilinear interpolation between eight corners, x fastest.
