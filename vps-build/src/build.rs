@@ -420,11 +420,13 @@ fn voxelmap(
         far_m: far as f32,
         band_m: ((BAND - 0.01) * size) as f32,
     };
-    let sigma = match coding {
-        Coding::Integers(sigma) => sigma as f32,
-        Coding::Floats => 1.0,
-    };
-    Ok(Voxelmap::new(grid, sigma, solid, accuracy, store)?)
+    Ok(Voxelmap::new(
+        grid,
+        coding.sigma() as f32,
+        solid,
+        accuracy,
+        store,
+    )?)
 }
 
 /// Eq. 1: λ = 10^-p, with as many decimal places as distances up to `largest` leave in 16 bits.

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use crate::Mesh;
+use crate::edges::Edges;
 use crate::sample::opposed_within;
+use crate::triangle::signed_volume;
 
 /// A health report of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,44 +57,29 @@ impl Health {
         }
         let duplicate_faces = same.values().map(|n| n - 1).sum();
 
-        // How often each edge is used, forwards and backwards.
-        let mut edges: HashMap<(u32, u32), (u32, u32)> = HashMap::new();
         let mut parts = UnionFind::new(mesh.vertices().len());
         for &[a, b, c] in triangles {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                parts.join(from, to);
-                if from == to {
-                    continue;
-                }
-                let uses = edges.entry((from.min(to), from.max(to))).or_default();
-                if from < to {
-                    uses.0 += 1;
-                } else {
-                    uses.1 += 1;
-                }
-            }
+            parts.join(a, b);
+            parts.join(b, c);
         }
         let mut rims = UnionFind::new(mesh.vertices().len());
         let mut on_rim = Vec::new();
         let (mut boundary_edges, mut non_manifold_edges, mut inconsistent_edges) = (0, 0, 0);
-        for (&(a, b), uses) in &edges {
+        for uses in Edges::of(triangles).groups() {
             match uses {
-                (1, 1) => {}
-                (1, 0) | (0, 1) => {
+                [edge] => {
                     boundary_edges += 1;
+                    let (a, b) = edge.between;
                     rims.join(a, b);
                     on_rim.push(a);
                 }
-                (2, 0) | (0, 2) => inconsistent_edges += 1,
+                [a, b] => inconsistent_edges += usize::from(a.forward == b.forward),
                 _ => non_manifold_edges += 1,
             }
         }
         let used = triangles.iter().flatten().copied();
         let (low, high) = mesh.bounds();
-        let volume = |t: usize| {
-            let [a, b, c] = mesh.corners(t).map(|v| v - low);
-            a.dot(b.cross(c)) / 6.0
-        };
+        let volume = |t: usize| signed_volume(mesh.corners(t), low);
         Self {
             vertices: mesh.vertices().len(),
             triangles: triangles.len(),

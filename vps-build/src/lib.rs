@@ -36,6 +36,7 @@ mod build;
 mod bvh;
 mod cluster;
 mod distance;
+mod edges;
 mod file;
 mod health;
 mod kdtree;

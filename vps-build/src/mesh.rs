@@ -1,7 +1,7 @@
-use std::collections::HashMap;
-
 use glamx::DVec3;
 use rustc_hash::{FxBuildHasher, FxHashMap};
+
+use crate::edges::Edges;
 
 /// A triangle mesh in metres, checked: its triangles refer to finite vertices and it extends in
 /// space.
@@ -230,16 +230,7 @@ impl Mesh {
     /// How many edges have a triangle on one side and no fitting one on the other: 0 for a closed
     /// mesh whose triangles all face the same way.
     pub fn open_edges(&self) -> usize {
-        let mut balance = HashMap::new();
-        for &[a, b, c] in &self.triangles {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let way = if from < to { 1 } else { -1 };
-                *balance.entry((from.min(to), from.max(to))).or_insert(0_i64) += way;
-            }
-        }
-        // An edge of a triangle without area may begin and end at one vertex.
-        let open = |((from, to), balance): (&(u32, u32), &i64)| from != to && *balance != 0;
-        balance.iter().filter(|edge| open(*edge)).count()
+        Edges::of(&self.triangles).open_count()
     }
 
     /// Area of all triangles in m².

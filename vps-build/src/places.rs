@@ -46,7 +46,7 @@ impl Places {
         let windings = windings(mesh, [&x, &y, &z]);
         let is_simple = windings.iter().all(|w| (0..=1).contains(w));
         places.inside = windings.iter().map(|&w| w > 0).collect();
-        (places.with_surface(mesh, grid), is_simple)
+        (places.with_surface(mesh), is_simple)
     }
 
     /// By generalised winding numbers: the solid is where they are above one half. Says, too,
@@ -64,7 +64,7 @@ impl Places {
             .collect();
         let is_simple = windings.iter().all(|&w| w < 1.5);
         places.inside = windings.iter().map(|&w| w > 0.5).collect();
-        (places.with_surface(mesh, grid), is_simple)
+        (places.with_surface(mesh), is_simple)
     }
 
     /// By a fill from outside through faces of voxels free of triangles. What it does not reach is
@@ -72,7 +72,7 @@ impl Places {
     pub(crate) fn by_fill(mesh: &Mesh, grid: &Grid) -> Self {
         let mut places = Self::outside(mesh, grid);
         places.inside.fill(true);
-        let mut places = places.with_surface(mesh, grid);
+        let mut places = places.with_surface(mesh);
         fill_outside(places.dims, &mut places.places);
         let is_inside = |&place: &Place| place == Place::Inside;
         places.inside = places.places.iter().map(is_inside).collect();
@@ -97,7 +97,7 @@ impl Places {
     }
 
     /// The same solid with the triangles of `mesh` as its surface.
-    pub(crate) fn with_surface(mut self, mesh: &Mesh, grid: &Grid) -> Self {
+    pub(crate) fn with_surface(mut self, mesh: &Mesh) -> Self {
         for (place, inside) in self.places.iter_mut().zip(&self.inside) {
             *place = if *inside {
                 Place::Inside
@@ -105,8 +105,8 @@ impl Places {
                 Place::Outside
             };
         }
-        let origin = grid.origin().as_dvec3();
-        let size = f64::from(grid.voxel_size());
+        let origin = self.grid.origin().as_dvec3();
+        let size = f64::from(self.grid.voxel_size());
         let touched: Vec<Vec<u32>> = (0..mesh.triangles().len())
             .collect::<Vec<_>>()
             .par_chunks(1024)

@@ -13,9 +13,11 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use vps_core::Grid;
 
+use crate::edges::Edges;
 use crate::health::UnionFind;
 use crate::places::{Place, Places};
 use crate::solid_angle::SolidAngle;
+use crate::triangle::signed_volume;
 use crate::winding::Lines;
 use crate::{BuildError, Mesh};
 
@@ -108,7 +110,7 @@ pub(crate) fn solid<'m>(mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Solid
     let mesh = Mesh::new(surface.vertices(), &shown)?;
     Ok(Solid {
         // The places of hidden faces are no surface.
-        places: places.with_surface(&mesh, grid),
+        places: places.with_surface(&mesh),
         mesh: Cow::Owned(mesh),
         is_closed,
         repairs,
@@ -137,7 +139,7 @@ fn surface<'m>(
             return Err(BuildError::NotSolid);
         }
     } else if repairs.removed_faces == 0
-        && Edges::of(&triangles).all_closed()
+        && Edges::of(&triangles).open_count() == 0
         && all_parts_outwards(mesh)
     {
         return Ok(Cow::Borrowed(mesh));
@@ -183,50 +185,6 @@ fn without_doubles(mesh: &Mesh) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The directed edges of all triangles, those between the same two vertices side by side.
-struct Edges(Vec<Edge>);
-
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Edge {
-    /// The vertex with the lower number, then the other.
-    between: (u32, u32),
-    triangle: u32,
-    forward: bool,
-}
-
-impl Edges {
-    fn of(triangles: &[[u32; 3]]) -> Self {
-        let edges = |(t, &[a, b, c]): (usize, &[u32; 3])| {
-            [(a, b), (b, c), (c, a)].map(|(from, to)| Edge {
-                between: (from.min(to), from.max(to)),
-                triangle: t as u32,
-                forward: from < to,
-            })
-        };
-        let mut all: Vec<_> = triangles
-            .par_iter()
-            .enumerate()
-            .flat_map_iter(edges)
-            .collect();
-        all.par_sort_unstable();
-        Self(all)
-    }
-
-    /// The uses of one edge at a time.
-    fn groups(&self) -> impl Iterator<Item = &[Edge]> {
-        self.0.chunk_by(|a, b| a.between == b.between)
-    }
-
-    /// How often an edge is used forwards more than backwards.
-    fn excess(uses: &[Edge]) -> i32 {
-        uses.iter().map(|e| if e.forward { 1 } else { -1 }).sum()
-    }
-
-    fn all_closed(&self) -> bool {
-        self.groups().all(|uses| Self::excess(uses) == 0)
-    }
-}
-
 /// Whether each part of a closed mesh has a positive volume.
 fn all_parts_outwards(mesh: &Mesh) -> bool {
     let mut parts = UnionFind::new(mesh.vertices().len());
@@ -240,12 +198,6 @@ fn all_parts_outwards(mesh: &Mesh) -> bool {
         *volumes.entry(parts.root(vertex)).or_insert(0.0) += signed_volume(mesh.corners(t), origin);
     }
     volumes.values().all(|&volume| volume >= 0.0)
-}
-
-/// Of the tetrahedron between a triangle and a point, in m³.
-fn signed_volume(corners: [DVec3; 3], point: DVec3) -> f64 {
-    let [a, b, c] = corners.map(|v| v - point);
-    a.dot(b.cross(c)) / 6.0
 }
 
 /// Turns triangles until those with a common edge agree, most of each patch stays as it was, and

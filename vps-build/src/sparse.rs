@@ -33,7 +33,7 @@ impl Coding {
     }
 
     /// What a value is worth in metres.
-    fn sigma(self) -> f64 {
+    pub(crate) fn sigma(self) -> f64 {
         match self {
             Self::Integers(sigma) => sigma,
             Self::Floats => 1.0,
@@ -225,6 +225,12 @@ fn corner(first: [u32; 3], size: u32, i: usize) -> [u32; 3] {
     [0, 1, 2].map(|a| first[a] + size * (i as u32 >> a & 1))
 }
 
+/// Where the sample of a voxel is.
+fn index(local: [u32; 3]) -> usize {
+    let [x, y, z] = local.map(|c| c as usize);
+    (z * SIDE + y) * SIDE + x
+}
+
 /// The smallest change, without its sign, along the four edges of one axis; 0 if they do not
 /// agree on the sign.
 fn least_change(corners: &[f64; 8], axis: usize) -> f64 {
@@ -256,12 +262,13 @@ impl<'a> Cell<'a> {
         for i in self.asked.drain(..) {
             self.samples[i] = None;
         }
-        let coarse = Cube {
-            first: [0; 3],
-            size: CELL,
-            corners: lattice.map(|sample| self.stored(sample.0)),
-        };
-        if self.holds(&coarse, [0; 3], CELL, Some(lattice)) {
+        for (i, sample) in lattice.into_iter().enumerate() {
+            let index = index(corner([0; 3], CELL, i));
+            self.samples[index] = Some(sample);
+            self.asked.push(index);
+        }
+        let coarse = self.cube([0; 3], CELL);
+        if self.holds(&coarse, [0; 3], CELL) {
             return None;
         }
         let half = CELL / 2;
@@ -275,25 +282,12 @@ impl<'a> Cell<'a> {
             bricks: 0,
             values: Vec::new(),
         };
-        let octants: Vec<Cube> = (0..8)
-            .map(|i| {
-                let first = corner([0; 3], half, i);
-                let corners = core::array::from_fn(|j| {
-                    let penetration = self.sample(corner(first, half, j)).0;
-                    self.stored(penetration)
-                });
-                Cube {
-                    first,
-                    size: half,
-                    corners,
-                }
-            })
-            .collect();
-        for octant in &octants {
-            if !self.holds(octant, octant.first, half, None) {
+        for i in 0..8 {
+            let octant = self.cube(corner([0; 3], half, i), half);
+            if !self.holds(&octant, octant.first, half) {
                 for i in 0..8 {
                     let first = corner(octant.first, 2, i);
-                    if !self.holds(octant, first, 2, None) {
+                    if !self.holds(&octant, first, 2) {
                         let [x, y, z] = first.map(|c| c / 2);
                         refined.bricks |= 1 << ((z * 4 + y) * 4 + x);
                     }
@@ -310,15 +304,21 @@ impl<'a> Cell<'a> {
         Some(refined)
     }
 
-    /// Whether the values of a cube are good enough for all voxels of a part of it; `known` are
-    /// the samples at the corners of the part, if there are any yet.
-    fn holds(
-        &mut self,
-        cube: &Cube,
-        first: [u32; 3],
-        size: u32,
-        known: Option<[Sample; 8]>,
-    ) -> bool {
+    /// What the stored values at the corners of a cube make of the voxels in it.
+    fn cube(&mut self, first: [u32; 3], size: u32) -> Cube {
+        let corners = core::array::from_fn(|i| {
+            let penetration = self.sample(corner(first, size, i)).0;
+            f64::from(self.coding.value(penetration)) * self.coding.sigma()
+        });
+        Cube {
+            first,
+            size,
+            corners,
+        }
+    }
+
+    /// Whether the values of a cube are good enough for all voxels of a part of it.
+    fn holds(&mut self, cube: &Cube, first: [u32; 3], size: u32) -> bool {
         if size == 1 {
             return self.holds_at(cube, first);
         }
@@ -326,11 +326,11 @@ impl<'a> Cell<'a> {
         if !self.holds_at(cube, first.map(|c| c + size / 2)) {
             return false;
         }
-        if self.is_proven(cube, first, size, known) {
+        if self.is_proven(cube, first, size) {
             return true;
         }
         let half = size / 2;
-        (0..8).all(|i| self.holds(cube, corner(first, half, i), half, None))
+        (0..8).all(|i| self.holds(cube, corner(first, half, i), half))
     }
 
     /// Whether the value of a cube is good enough for a voxel.
@@ -357,13 +357,7 @@ impl<'a> Cell<'a> {
     ///   the most it is at a corner and what this makes of the smallest d_i.
     /// * No point of the mesh is closer to x than d(x), and those closest to the corners and to the
     ///   middle are known: d(x) is no more than the least distance to one of them.
-    fn is_proven(
-        &mut self,
-        cube: &Cube,
-        first: [u32; 3],
-        size: u32,
-        known: Option<[Sample; 8]>,
-    ) -> bool {
+    fn is_proven(&mut self, cube: &Cube, first: [u32; 3], size: u32) -> bool {
         let Tolerance { error, band } = self.tolerance;
         let edge = f64::from(size) * f64::from(self.grid.voxel_size());
         let half_diagonal = 0.8661 * edge;
@@ -379,7 +373,7 @@ impl<'a> Cell<'a> {
         if given.iter().any(|&g| g <= band) {
             return false;
         }
-        let samples = known.unwrap_or_else(|| corners.map(|at| self.sample(at)));
+        let samples = corners.map(|at| self.sample(at));
         let exact = samples.map(|(penetration, _)| penetration * sign);
         let nearest = exact.iter().fold(f64::INFINITY, |n, &e| n.min(e));
         if nearest <= half_diagonal {
@@ -413,11 +407,6 @@ impl<'a> Cell<'a> {
         })
     }
 
-    /// The penetration as it comes out of the store.
-    fn stored(&self, penetration: f64) -> f64 {
-        f64::from(self.coding.value(penetration)) * self.coding.sigma()
-    }
-
     fn is_in_grid(&self, local: [u32; 3]) -> bool {
         let dims = self.grid.dims();
         (0..3).all(|a| self.first[a] + local[a] < dims[a])
@@ -429,8 +418,7 @@ impl<'a> Cell<'a> {
     }
 
     fn sample(&mut self, local: [u32; 3]) -> Sample {
-        let [x, y, z] = local.map(|c| c as usize);
-        let index = (z * SIDE + y) * SIDE + x;
+        let index = index(local);
         if let Some(sample) = self.samples[index] {
             return sample;
         }

@@ -1,4 +1,4 @@
-//! The point of a triangle that is closest to another point.
+//! A triangle and a point: the closest point, and the volume between them.
 
 use glamx::DVec3;
 
@@ -35,6 +35,12 @@ pub(crate) fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
     }
     let inverse = 1.0 / (va + vb + vc);
     a + ab * (vb * inverse) + ac * (vc * inverse)
+}
+
+/// Of the tetrahedron between a triangle and a point, in m³.
+pub(crate) fn signed_volume(corners: [DVec3; 3], point: DVec3) -> f64 {
+    let [a, b, c] = corners.map(|v| v - point);
+    a.dot(b.cross(c)) / 6.0
 }
 
 #[cfg(test)]
