@@ -28,6 +28,10 @@ reproduce-smoke: fetch
 # All tests, with the same random cases every time
 test: (test-with "2014") no-std
 
+# The tests of queries and fields with 50 times as many random cases, all new
+test-long times="50":
+    VPS_TEST_TIMES={{ times }} cargo test --locked --release -p vps-build --test it -- queries fields --nocapture
+
 # All tests, with new random cases (proptest keeps what failed: commit it)
 test-random: (test-with "")
 
@@ -37,8 +41,9 @@ test-with seed:
     {{ if seed == "" { "" } else { "PROPTEST_RNG_SEED=" + seed } }} cargo test --locked --workspace --exclude vps-bench
     cargo test --locked --release -p vps-bench
 
-# The core without a standard library and without an allocator: fails to build if either is needed
+# The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
 no-std:
+    cargo run --locked --quiet -p vps-build --example torus -- target/torus.vps
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
 # Speed, sizes and errors of the builder, into reports/builder

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use vps_core::{Asset, Pose3, Query, Vec3};
+use vps_core::{Asset, Pose3, Query, Vec3, Weight};
 use xxhash_rust::xxh3::xxh3_64;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -27,7 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
     ] {
         let query = Query::new(&asset.tree, &trilinear, pose);
         query.for_each_contact(|_| ());
-        let _ = query.with_margin(0.1).wrench(Vec3::ZERO);
+        let _ = query.with_margin(0.1).wrench(Vec3::ZERO, Weight::Area);
         let _ = Query::new(&asset.tree, &local, pose).deepest();
     }
     let [x, y, z] = map.grid().dims().map(|n| n - 1);

@@ -1,5 +1,6 @@
 use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelmap, VoxelmapError};
 
+use crate::bends::bends;
 use crate::distance::{Exact, by_gradient_walk};
 use crate::layers::layers;
 use crate::mass::{mass_of_field, mass_of_mesh};
@@ -420,12 +421,14 @@ fn voxelmap(
         far_m: far as f32,
         band_m: ((BAND - 0.01) * size) as f32,
     };
+    let bends = bends(&store, (coding.sigma() / size) as f32);
     Ok(Voxelmap::new(
         grid,
         coding.sigma() as f32,
         solid,
         accuracy,
         store,
+        bends.into(),
     )?)
 }
 

@@ -68,9 +68,12 @@ fn assemble(samples: &Samples, levels: &[Level]) -> Result<PointSphereTree<'stat
             clusters.push(Cluster {
                 center: [0.0; 3],
                 radius: 0.0,
+                normal: [0.0; 3],
+                thickness: 0.0,
                 first: next.len() as u32,
                 count: level.members[cluster].len() as u32,
                 parent_point: level.parent_points[cluster] as u32,
+                area: 0.0,
             });
             next.extend(&level.members[cluster]);
         }
@@ -93,16 +96,25 @@ fn assemble(samples: &Samples, levels: &[Level]) -> Result<PointSphereTree<'stat
     for cluster in &mut clusters {
         cluster.parent_point = new_place[cluster.parent_point as usize];
     }
-    wrap_in_balls(&mut clusters, &level_starts, &points);
+    let areas: Vec<_> = order.iter().map(|&p| samples.areas[p]).collect();
+    wrap(&mut clusters, &level_starts, &points, &normals, &areas);
     PointSphereTree::new(
         points.into(),
         normals.into(),
+        areas.into(),
         clusters.into(),
         level_starts.into(),
     )
 }
 
-fn wrap_in_balls(clusters: &mut [Cluster], level_starts: &[u32], points: &[[f32; 3]]) {
+/// Gives each cluster the ball, the plane and the area of the points below.
+fn wrap(
+    clusters: &mut [Cluster],
+    level_starts: &[u32],
+    points: &[[f32; 3]],
+    normals: &[[f32; 3]],
+    areas: &[f32],
+) {
     // The range of points below each cluster, from the leaves up.
     let mut below: Vec<(usize, usize)> = vec![(0, 0); clusters.len()];
     let levels = level_starts.len() - 1;
@@ -135,6 +147,18 @@ fn wrap_in_balls(clusters: &mut [Cluster], level_starts: &[u32], points: &[[f32;
                 .iter()
                 .map(|&p| center.distance(Vec3::from_array(p)))
                 .fold(0.0, f32::max);
+            let facing: Vec3 = normals[start..end]
+                .iter()
+                .map(|&n| Vec3::from_array(n))
+                .sum();
+            let normal = facing.normalize_or(Vec3::Y);
+            cluster.normal = normal.to_array();
+            cluster.thickness = points[start..end]
+                .iter()
+                .map(|&p| (Vec3::from_array(p) - center).dot(normal).abs())
+                .fold(0.0, f32::max);
+            let area: f64 = areas[start..end].iter().map(|&a| f64::from(a)).sum();
+            cluster.area = area as f32;
         });
 }
 

@@ -32,6 +32,7 @@
 #![forbid(unsafe_code)]
 
 pub mod ball;
+mod bends;
 mod build;
 mod bvh;
 mod cluster;
@@ -43,6 +44,7 @@ mod kdtree;
 mod layers;
 mod mass;
 mod mesh;
+pub mod models;
 mod places;
 mod read;
 mod sample;

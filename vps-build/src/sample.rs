@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use vps_core::{DistanceField, Vec3, Voxelmap};
 
+use crate::kdtree::KdTree;
 use crate::places::{AROUND, for_each_overlapped};
 use crate::triangle::closest_point;
 use crate::{Mesh, PointCount};
@@ -28,6 +29,8 @@ pub(crate) struct Samples {
     pub(crate) positions: Vec<DVec3>,
     /// Unit inward normals.
     pub(crate) normals: Vec<Vec3>,
+    /// The area of the surface each stands for, in m²: all together that of the mesh.
+    pub(crate) areas: Vec<f32>,
 }
 
 /// How many times its spacing squared a point covers, about.
@@ -45,7 +48,62 @@ pub(crate) fn sample(mesh: &Mesh, count: PointCount, map: &Voxelmap<'_>) -> Samp
         PointCount::About(count) => about(mesh, count),
     };
     let normals = inward_normals(mesh, &positions, map);
-    Samples { positions, normals }
+    let areas = shares_of_area(mesh, &positions, &normals);
+    Samples {
+        positions,
+        normals,
+        areas,
+    }
+}
+
+/// How much of the surface is closest to each point, of those on its side of a thin wall. Triangles
+/// are cut until their edges are shorter than half the usual distance of two points.
+fn shares_of_area(mesh: &Mesh, positions: &[DVec3], normals: &[Vec3]) -> Vec<f32> {
+    let by_place = KdTree::new(positions);
+    let covered = mesh.area() / positions.len() as f64;
+    let longest = 0.25 * covered / COVERED;
+    let triangles: Vec<_> = (0..mesh.triangles().len()).collect();
+    let shares: Vec<Vec<(usize, f64)>> = triangles
+        .par_chunks(256)
+        .map(|triangles| {
+            let mut shares = Vec::new();
+            for &t in triangles {
+                let triangle = mesh.corners(t);
+                let [a, b, c] = triangle;
+                let normal = (b - a).cross(c - a);
+                let inward = -normal.as_vec3();
+                for_each_piece(triangle, longest, &mut |[a, b, c]| {
+                    let closest = by_place.closest((a + b + c) / 3.0, CLOSEST);
+                    let faces = |p: &&usize| normals[**p].dot(inward) >= 0.0;
+                    let point = closest.iter().find(faces).unwrap_or(&closest[0]);
+                    shares.push((*point, 0.5 * (b - a).cross(c - a).length()));
+                });
+            }
+            shares
+        })
+        .collect();
+    let mut areas = vec![0.0; positions.len()];
+    for (point, area) in shares.into_iter().flatten() {
+        areas[point] += area;
+    }
+    areas.into_iter().map(|a| a as f32).collect()
+}
+
+/// How many points are looked at for one on the same side of a wall.
+const CLOSEST: usize = 4;
+
+/// Halves a triangle along its longest edge until no squared edge is longer than `longest`.
+fn for_each_piece(triangle: [DVec3; 3], longest: f64, visit: &mut impl FnMut([DVec3; 3])) {
+    let edge = |i: usize| triangle[i].distance_squared(triangle[(i + 1) % 3]);
+    let at = (0..3).fold(0, |most, i| if edge(i) > edge(most) { i } else { most });
+    if edge(at) <= longest {
+        visit(triangle);
+        return;
+    }
+    let [a, b, c] = [0, 1, 2].map(|i| triangle[(at + i) % 3]);
+    let middle = a.midpoint(b);
+    for_each_piece([a, middle, c], longest, visit);
+    for_each_piece([middle, b, c], longest, visit);
 }
 
 /// As close to `count` points as some spacing gives.

@@ -25,26 +25,31 @@ impl Aabb {
     }
 
     /// The point of the box closest to `point`.
+    #[inline]
     pub fn clamp(&self, point: Vec3) -> Vec3 {
         point.max(self.min).min(self.max)
     }
 
     /// Whether `point` lies in the box or on its surface.
+    #[inline]
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
     /// Distance in metres from `point` to the box, 0 inside it.
+    #[inline]
     pub fn distance_outside(&self, point: Vec3) -> f32 {
         point.distance(self.clamp(point))
     }
 
     /// The middle of the box.
+    #[inline]
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
 
     /// Edge lengths in metres.
+    #[inline]
     pub fn extents(&self) -> Vec3 {
         self.max - self.min
     }

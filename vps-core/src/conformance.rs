@@ -2,34 +2,58 @@
 
 use glamx::Vec3;
 
-use crate::DistanceField;
+use crate::{Aabb, Discs, DistanceField, LANES, Points};
 
 /// A promise of [`DistanceField`] that was broken.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Violation {
-    /// The bound of a ball is below the penetration of a point in it.
+    /// The bound of a ball or disc is below the penetration of a point in it.
     #[error(
-        "the ball around {center} of radius {radius} m has bound {bound} m, but {point} in it has {penetration} m"
+        "the {piece} around {center} of radius {radius} m has bound {bound} m, but {point} in it has {penetration} m"
     )]
     Bound {
-        /// Centre of the ball.
+        /// Ball or disc.
+        piece: &'static str,
+        /// Its centre.
         center: Vec3,
-        /// Radius of the ball in metres.
+        /// Its radius in metres.
         radius: f32,
-        /// What `penetration_bound` gave.
+        /// The bound.
         bound: f32,
         /// The point.
         point: Vec3,
         /// Its penetration.
         penetration: f32,
     },
+    /// A disc has a higher bound than the ball around it.
+    #[error("the disc around {center} has bound {disc} m, the ball {ball} m")]
+    Disc {
+        /// Its centre.
+        center: Vec3,
+        /// Its bound.
+        disc: f32,
+        /// That of the ball.
+        ball: f32,
+    },
+    /// Several points at a time have other penetrations than one by one.
+    #[error("{point} has penetration {alone} m alone, but {together} m with others")]
+    Lanes {
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        alone: f32,
+        /// As one of several.
+        together: f32,
+    },
     /// A point in the solid lies outside of its bounds.
-    #[error("{point} is {penetration} m inside, but out of bounds")]
+    #[error("{point} is {penetration} m inside, but out of bounds {bounds:?}")]
     Bounds {
         /// The point.
         point: Vec3,
         /// Its penetration.
         penetration: f32,
+        /// What should hold it.
+        bounds: Aabb,
     },
     /// The inward direction is not of length one (or zero).
     #[error("the inward direction at {point} has length {length}")]
@@ -41,12 +65,13 @@ pub enum Violation {
     },
 }
 
-/// Checks the promises for a ball and a point in it: `inside` lies in the unit ball and is scaled
-/// to the ball around `center`; `normal` is any unit vector.
+/// Checks the promises for a ball, a disc and a point in both: `inside` lies in the unit ball and
+/// is scaled to the ball around `center`; the disc lies across the unit vector `normal`, which is
+/// also that of the point, and is as thick as the point needs it to be.
 ///
 /// # Errors
 /// The first promise that is broken.
-pub fn check_ball(
+pub fn check(
     field: &impl DistanceField,
     center: Vec3,
     radius: f32,
@@ -56,19 +81,50 @@ pub fn check_ball(
     let point = center + inside * radius;
     let penetration = field.penetration(point, normal);
     let rounding = 16.0 * f32::EPSILON * (center.length() + radius);
-    let bound = field.penetration_bound(center, radius + rounding);
-    if penetration > bound {
-        return Err(Violation::Bound {
-            center,
-            radius,
-            bound,
+    let (radius, thickness) = (
+        radius + rounding,
+        (point - center).dot(normal).abs() + rounding,
+    );
+    let ball = field.penetration_bound(center, radius);
+    let discs = Discs {
+        centers: Points::splat(center),
+        radii: [radius; LANES],
+        normals: Points::splat(normal),
+        thickness: [thickness; LANES],
+    };
+    let disc = field.penetration_bounds(&discs)[LANES - 1];
+    for (piece, bound) in [("ball", ball), ("disc", disc)] {
+        if penetration > bound {
+            return Err(Violation::Bound {
+                piece,
+                center,
+                radius,
+                bound,
+                point,
+                penetration,
+            });
+        }
+    }
+    if disc > ball + rounding {
+        return Err(Violation::Disc { center, disc, ball });
+    }
+    let mut points = Points::splat(center);
+    (points.x[1], points.y[1], points.z[1]) = (point.x, point.y, point.z);
+    let together = field.penetrations(&points, &Points::splat(normal))[1];
+    if together.to_bits() != penetration.to_bits() {
+        return Err(Violation::Lanes {
             point,
-            penetration,
+            alone: penetration,
+            together,
         });
     }
-    let outside = field.bounds().distance_outside(point);
-    if penetration > field.error_bound() && outside > rounding {
-        return Err(Violation::Bounds { point, penetration });
+    let bounds = field.bounds();
+    if penetration > field.error_bound() && bounds.distance_outside(point) > rounding {
+        return Err(Violation::Bounds {
+            point,
+            penetration,
+            bounds,
+        });
     }
     let length = field.inward_direction(point).length();
     if length != 0.0 && (length - 1.0).abs() > 1e-4 {

@@ -1,13 +1,13 @@
 use glamx::Vec3;
 
-use crate::Aabb;
+use crate::{Aabb, Discs, LANES, Points};
 
 /// A solid given by how deep a point lies in it.
 ///
-/// Everything is in the field's own frame and in metres. Voxelmaps (through
-/// [`Voxelmap::local`](crate::Voxelmap::local) and
-/// [`Voxelmap::trilinear`](crate::Voxelmap::trilinear)) and analytic shapes implement it;
-/// [`conformance`](crate::conformance) holds the checks an implementation must pass.
+/// Everything is in the field's own frame and in metres. Voxelmaps (through their views, such as
+/// [`Voxelmap::trilinear`](crate::Voxelmap::trilinear)), analytic shapes and
+/// [functions](crate::FieldFn) implement it; [`conformance`](crate::conformance) holds the checks
+/// an implementation must pass.
 pub trait DistanceField {
     /// Penetration V(P) of a shell point in metres: positive inside, negative outside
     /// (section 2.2).
@@ -22,7 +22,7 @@ pub trait DistanceField {
 
     /// An upper bound in metres on [`penetration`](Self::penetration) for every point of the ball
     /// around `center`, whatever its normal: a ball whose bound is below a threshold holds no
-    /// point that reaches it.
+    /// point that reaches it. The closer it is, the less a query has to look at.
     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32;
 
     /// A box that holds the solid.
@@ -35,5 +35,19 @@ pub trait DistanceField {
     /// The negative of the penetration: positive outside. For fields that need no normal.
     fn signed_distance(&self, point: Vec3) -> f32 {
         -self.penetration(point, Vec3::ZERO)
+    }
+
+    /// [`penetration`](Self::penetration) of several points, the same to the bit.
+    #[inline(always)]
+    fn penetrations(&self, points: &Points, normals: &Points) -> [f32; LANES] {
+        core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
+    }
+
+    /// Upper bounds on the [`penetration`](Self::penetration) in several discs, each at most the
+    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field that knows
+    /// how it bends can use that a disc is flat.
+    #[inline(always)]
+    fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
+        core::array::from_fn(|i| self.penetration_bound(discs.centers.get(i), discs.radii[i]))
     }
 }

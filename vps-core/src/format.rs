@@ -13,8 +13,9 @@
 //! | 40..48 | number of clusters |
 //! | 48..52 | number of groups of cells, 0 for a dense voxelmap |
 //! | 52..56 | number of refined cells |
-//! | 56..60 | bytes of a value: 2 (i16) or 4 (f32) |
-//! | 60..64 | number of levels + 1 |
+//! | 56..60 | number of bends |
+//! | 60..62 | bytes of a value: 2 (i16) or 4 (f32) |
+//! | 62..64 | number of levels + 1 |
 //!
 //! Sections in order:
 //!
@@ -22,11 +23,13 @@
 //! |---|---|---|
 //! | parameters | see below | 112 |
 //! | values v of the voxelmap, in the order of its [`Store`] | i16 or f32 | 2 or 4 |
+//! | bends, one for each cell of 8 x 8 x 8 voxels (see [`Voxelmap::new`]) | u8 | 1 |
 //! | groups of cells | a [`CellGroup`]: bits u64, refined before u32, zero u32 | 16 |
 //! | refined cells | a [`RefinedCell`]: bits u64, first brick u32, zero u32 | 16 |
 //! | points in metres, in the order of the leaves | 3 x f32 | 12 |
 //! | unit inward normals | 3 x f32 | 12 |
-//! | clusters, level by level from the top | a [`Cluster`]: centre 3 x f32, radius f32, first child, number of children, parent point (u32 each) | 28 |
+//! | areas of the points in m² | f32 | 4 |
+//! | clusters, level by level from the top | a [`Cluster`]: centre, radius, normal, thickness, first child, number of children, parent point (u32 each, the others f32), area | 48 |
 //! | level starts | u32 | 4 |
 //!
 //! The parameters, in metres where they have a unit:
@@ -53,7 +56,7 @@ use crate::{
 };
 
 /// Version of the `.vps` file this library reads and writes.
-pub const VPS_VERSION: u64 = 2;
+pub const VPS_VERSION: u64 = 3;
 
 const MAGIC: [u8; 8] = *b"VPSASSET";
 const ALIGN: usize = 64;
@@ -70,8 +73,9 @@ struct Header {
     clusters: u64,
     groups: u32,
     cells: u32,
-    value_bytes: u32,
-    level_starts: u32,
+    bends: u32,
+    value_bytes: u16,
+    level_starts: u16,
 }
 
 /// From where on bytes are checked.
@@ -119,7 +123,7 @@ pub enum FormatError {
     Alignment,
     /// Values of a size that does not exist.
     #[error("in the voxelmap: values of {0} bytes")]
-    ValueBytes(u32),
+    ValueBytes(u16),
     /// The grid is none.
     #[error("in the voxelmap: {0}")]
     Grid(#[from] GridError),
@@ -133,7 +137,7 @@ pub enum FormatError {
 
 /// Where the sections of a file lie.
 struct Layout {
-    starts: [usize; 8],
+    starts: [usize; 10],
     end: usize,
 }
 
@@ -147,14 +151,16 @@ impl Layout {
         let sizes = [
             size_of::<Parameters>(),
             size(header.values, header.value_bytes as usize)?,
+            header.bends as usize,
             size(u64::from(header.groups), size_of::<CellGroup>())?,
             size(u64::from(header.cells), size_of::<RefinedCell>())?,
             size(header.points, size_of::<[f32; 3]>())?,
             size(header.points, size_of::<[f32; 3]>())?,
+            size(header.points, size_of::<f32>())?,
             size(header.clusters, size_of::<Cluster>())?,
             size(u64::from(header.level_starts), size_of::<u32>())?,
         ];
-        let mut starts = [0; 8];
+        let mut starts = [0; 10];
         let mut end = size_of::<Header>();
         for (start, size) in starts.iter_mut().zip(sizes) {
             *start = end.checked_next_multiple_of(ALIGN)?;
@@ -201,10 +207,12 @@ impl<'a> Asset<'a> {
         let [
             parameters,
             values,
+            bends,
             groups,
             cells,
             points,
             normals,
+            areas,
             clusters,
             levels,
         ] = layout.starts;
@@ -238,10 +246,12 @@ impl<'a> Asset<'a> {
                     band_m: p.band_m,
                 },
                 store,
+                cast(bytes, bends, header.bends as usize)?.into(),
             )?,
             tree: PointSphereTree::new(
                 cast(bytes, points, point_count)?.into(),
                 cast(bytes, normals, point_count)?.into(),
+                cast(bytes, areas, point_count)?.into(),
                 cast(bytes, clusters, header.clusters as usize)?.into(),
                 cast(bytes, levels, header.level_starts as usize)?.into(),
             )?,
@@ -267,11 +277,12 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         clusters: tree.clusters().len() as u64,
         groups: groups.len() as u32,
         cells: cells.len() as u32,
+        bends: map.bends().len() as u32,
         value_bytes: match values {
             Values::Integers(_) => 2,
             Values::Floats(_) => 4,
         },
-        level_starts: tree.level_starts().len() as u32,
+        level_starts: tree.level_starts().len() as u16,
     };
     let accuracy = map.accuracy();
     let parameters = Parameters {
@@ -287,13 +298,15 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         mass: asset.mass,
         zero: 0,
     };
-    let sections: [&[u8]; 8] = [
+    let sections: [&[u8]; 10] = [
         bytes_of(&parameters),
         values.bytes(),
+        map.bends(),
         cast_slice(groups),
         cast_slice(cells),
         cast_slice(tree.points()),
         cast_slice(tree.normals()),
+        cast_slice(tree.areas()),
         cast_slice(tree.clusters()),
         cast_slice(tree.level_starts()),
     ];

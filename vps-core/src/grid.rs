@@ -1,12 +1,15 @@
 use glamx::Vec3;
+use wide::{f32x4, i32x4};
 
 use crate::Aabb;
+use crate::lanes::{LANES, Vectors};
 
 /// A regular grid of cubical voxels (section 2.1.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     origin: Vec3,
     voxel_size: f32,
+    per_metre: f32,
     dims: [u32; 3],
 }
 
@@ -45,21 +48,31 @@ impl Grid {
         Ok(Self {
             origin,
             voxel_size,
+            per_metre: voxel_size.recip(),
             dims,
         })
     }
 
     /// The lowest corner of the grid, in metres in the field frame.
+    #[inline]
     pub fn origin(&self) -> Vec3 {
         self.origin
     }
 
     /// Edge length s of a voxel in metres.
+    #[inline]
     pub fn voxel_size(&self) -> f32 {
         self.voxel_size
     }
 
+    /// How many voxels fill a metre.
+    #[inline]
+    pub(crate) fn per_metre(&self) -> f32 {
+        self.per_metre
+    }
+
     /// Voxels along x, y and z.
+    #[inline]
     pub fn dims(&self) -> [u32; 3] {
         self.dims
     }
@@ -70,8 +83,10 @@ impl Grid {
     }
 
     /// The box the voxels fill.
+    #[inline]
     pub fn bounds(&self) -> Aabb {
-        let dims = Vec3::from_array(self.dims.map(|n| n as f32));
+        let [nx, ny, nz] = self.dims;
+        let dims = Vec3::new(nx as f32, ny as f32, nz as f32);
         Aabb {
             min: self.origin,
             max: self.origin + dims * self.voxel_size,
@@ -79,6 +94,7 @@ impl Grid {
     }
 
     /// Position of a voxel in an array of all voxels: x runs fastest, then y, then z.
+    #[inline]
     pub fn index(&self, voxel: [u32; 3]) -> usize {
         let [nx, ny, _] = self.dims.map(|n| n as usize);
         let [x, y, z] = voxel.map(|c| c as usize);
@@ -86,17 +102,21 @@ impl Grid {
     }
 
     /// Centre C of a voxel in metres in the field frame.
+    #[inline]
     pub fn center(&self, voxel: [u32; 3]) -> Vec3 {
-        let voxel = Vec3::from_array(voxel.map(|c| c as f32));
+        let [x, y, z] = voxel;
+        let voxel = Vec3::new(x as f32, y as f32, z as f32);
         self.origin + (voxel + 0.5) * self.voxel_size
     }
 
     /// The voxel that holds `point`, or the closest one for a point outside of the grid.
+    #[inline]
     pub fn voxel_at(&self, point: Vec3) -> [u32; 3] {
-        self.clamped((point - self.origin) / self.voxel_size)
+        self.clamped((point - self.origin) * self.per_metre)
     }
 
     /// The box between the outermost voxel centres, half a voxel smaller than the grid.
+    #[inline]
     pub(crate) fn center_bounds(&self) -> Aabb {
         let bounds = self.bounds();
         let half = Vec3::splat(0.5 * self.voxel_size);
@@ -106,21 +126,35 @@ impl Grid {
         }
     }
 
-    /// The lowest of the eight voxels whose centres surround `point`, and how far the point lies
-    /// between their centres along each axis, from 0 to 1. The point must lie in
-    /// [`center_bounds`](Self::center_bounds).
-    pub(crate) fn cell_at(&self, point: Vec3) -> ([u32; 3], Vec3) {
-        let at = (point - self.origin) / self.voxel_size - 0.5;
-        let corner = self.clamped(at);
-        let corner = [0, 1, 2].map(|axis| corner[axis].min(self.dims[axis].saturating_sub(2)));
-        let fraction = at - Vec3::from_array(corner.map(|c| c as f32));
-        (corner, fraction)
+    /// The lowest of the eight voxels whose centres surround each point, and how far the point lies
+    /// between their centres along each axis, from 0 to 1. The points must lie in
+    /// [`center_bounds`](Self::center_bounds), and there must be two voxels along each axis.
+    #[inline(always)]
+    pub(crate) fn cells_at(&self, points: Vectors) -> ([[u32; 3]; LANES], Vectors) {
+        let axis = |axis: usize, coordinates: f32x4| {
+            let last = self.dims[axis].saturating_sub(2) as i32;
+            let at = (coordinates - self.origin[axis]) * self.per_metre - 0.5;
+            // No index leaves the grid, whatever is no number becomes.
+            let corner = at
+                .fast_trunc_int()
+                .max(i32x4::splat(0))
+                .min(i32x4::splat(last));
+            (corner.to_array(), at - corner.round_float())
+        };
+        let ((x, u), (y, v), (z, w)) = (axis(0, points.x), axis(1, points.y), axis(2, points.z));
+        let mut corners = [[0; 3]; LANES];
+        for lane in 0..LANES {
+            corners[lane] = [x[lane] as u32, y[lane] as u32, z[lane] as u32];
+        }
+        (corners, Vectors { x: u, y: v, z: w })
     }
 
     /// Casting saturates, so a NaN becomes voxel 0 and no index leaves the grid.
+    #[inline]
     fn clamped(&self, at: Vec3) -> [u32; 3] {
-        let at = at.to_array();
-        [0, 1, 2].map(|axis| (at[axis] as u32).min(self.dims[axis] - 1))
+        let clamp = |at: f32, count: u32| (at as u32).min(count - 1);
+        let [nx, ny, nz] = self.dims;
+        [clamp(at.x, nx), clamp(at.y, ny), clamp(at.z, nz)]
     }
 }
 

@@ -9,11 +9,15 @@
 //!
 //! ```
 //! use vps_core::{Cuboid, Pose3, Query, Vec3};
-//! # let (points, normals) = ([[0.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]);
-//! # let clusters = [vps_core::Cluster { center: [0.0; 3], radius: 1e-6, first: 0, count: 1, parent_point: 0 }];
+//! # let (points, normals, areas) = ([[0.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]], [1e-4]);
+//! # let clusters = [vps_core::Cluster {
+//! #     center: [0.0; 3], radius: 1e-6, normal: [0.0, 1.0, 0.0], thickness: 1e-6,
+//! #     first: 0, count: 1, parent_point: 0, area: 1e-4,
+//! # }];
 //! # let levels = [0, 1];
 //! # let tree = vps_core::PointSphereTree::new(
-//! #     points[..].into(), normals[..].into(), clusters[..].into(), levels[..].into()).unwrap();
+//! #     points[..].into(), normals[..].into(), areas[..].into(), clusters[..].into(),
+//! #     levels[..].into()).unwrap();
 //! let ground = Cuboid::new(Vec3::new(1.0, 0.1, 1.0));
 //! // The shell's frame lies 0.09 m above the middle of the ground: 10 mm too deep.
 //! let pose = Pose3::from_translation(Vec3::new(0.0, 0.09, 0.0));
@@ -21,6 +25,20 @@
 //! let deepest = query.deepest().expect("the point is inside");
 //! assert!((deepest.penetration - 0.01).abs() < 1e-6);
 //! ```
+//!
+//! # What to ask
+//! | you want | ask | costs |
+//! |---|---|---|
+//! | does it touch? | [`Query::touches`] | little: ends at the first contact |
+//! | the deepest contact δ | [`Query::deepest`] | branch and bound |
+//! | how far apart, and where | [`Query::closest`] | branch and bound |
+//! | a few contacts for an engine | [`Query::manifold`] | about that of the deepest |
+//! | one contact a segment (section 2.4) | [`Query::for_each_segment`] | branch and bound in each |
+//! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
+//! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
+//! | as much as there is time for | [`Query::time_critical`] | what you allow |
+//! | a fast body not to be missed | [`Sweep::first_contact`] | some touches |
+//! | two bodies, either way or both | [`BodyPair`] | one or two queries |
 //!
 //! # Conventions
 //! * **Sign**: penetration is positive inside a solid and negative outside;
@@ -33,9 +51,13 @@
 //! # Features
 //! `std` (default) takes mathematics from the standard library, `libm` from the `libm` crate: one
 //! of the two must be on. `alloc` adds structures that own their data. A query never allocates.
+//!
+//! With `std` on x86-64, queries use AVX2 and its bit counting where the processor has them, with
+//! the same results to the bit; without `std` they use what the crate is compiled for
+//! (`-C target-cpu`).
 
 #![no_std]
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
@@ -48,30 +70,49 @@ struct Readme;
 
 mod aabb;
 mod asset;
+mod body_pair;
 pub mod conformance;
+mod dispatch;
 mod field;
 pub mod format;
+mod function;
 mod grid;
+mod lanes;
 mod manifold;
 mod query;
+mod sampling;
+mod search;
+mod segments;
 mod shapes;
 mod storage;
 pub mod store;
+mod sweep;
+mod time_critical;
 mod tree;
 mod voxelmap;
+mod work;
+mod wrench;
 
 pub use aabb::Aabb;
 pub use asset::{Asset, MassProperties};
+pub use body_pair::{Body, BodyPair, PairContact, Shells, Side};
 pub use field::DistanceField;
 #[cfg(feature = "alloc")]
 pub use format::encode;
 pub use format::{FormatError, VPS_VERSION};
+pub use function::FieldFn;
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
 pub use grid::{Grid, GridError};
+pub use lanes::{Discs, LANES, Points};
 pub use manifold::ContactManifold;
-pub use query::{Contact, Query, Wrench};
-pub use shapes::{Ball, Cuboid, HalfSpace};
+pub use query::{Contact, Query};
+pub use sampling::{Linear, LocalPenetration, Trilinear};
+pub use shapes::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
 pub use storage::Storage;
 pub use store::{Store, Values};
+pub use sweep::{Impact, Sweep};
+pub use time_critical::Estimate;
 pub use tree::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
-pub use voxelmap::{Accuracy, LocalPenetration, Trilinear, Voxelmap, VoxelmapError};
+pub use voxelmap::{Accuracy, BEND_STEPS, UNKNOWN_BEND, Voxelmap, VoxelmapError};
+pub use work::{CountWork, Work};
+pub use wrench::{Weight, Wrench};

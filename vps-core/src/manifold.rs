@@ -1,68 +1,79 @@
 use glamx::Vec3;
+use wide::f32x4;
 
-use crate::Contact;
+use crate::dispatch::dispatch;
+use crate::lanes::{LANES, Vectors};
+use crate::query::TOP;
+use crate::search::Goal;
+use crate::work::CountWork;
+use crate::{Contact, Discs, DistanceField, PointSphereTree, Points, Query};
 
 /// At which fraction of the margin outside of the solid a contact counts half.
 const CLOSE: f32 = 0.01;
 
+/// Contacts that count less than this part of what the deepest does are not picked.
+const LEAST_WEIGHT: f32 = 1.0 / 4.0;
+
 /// At most `N` contacts that stand for a contact set: the deepest one first, then those that
 /// spread the manifold over the largest area (section 3.2).
-#[derive(Clone, Copy, Debug)]
+///
+/// What a point adds to the area counts less the further outside of the solid it is, half at a
+/// hundredth of the margin: the points a body stands on come before those that lie further apart
+/// above the ground, without which it would sink and rise and never rest. Those that count less
+/// than a quarter of what the deepest does are left out. Of equally good contacts the first is
+/// taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
     len: usize,
 }
 
 impl<const N: usize> ContactManifold<N> {
-    /// Picks from `contacts`, found by a query with `margin` metres. The area is that of the polygon
-    /// of the picked points seen `along` a direction in the shell frame, such as the normal of the
-    /// field at the deepest point.
-    ///
-    /// What a point adds to the area counts less the further outside of the solid it is, half at a
-    /// hundredth of the margin: the points a body stands on come before those that lie further
-    /// apart above the ground, without which it would sink and rise and never rest. Of equally
-    /// good contacts the first is taken. Costs `N` passes.
-    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
-        let nothing = Contact {
+    const EMPTY: Self = Self {
+        contacts: [Contact {
             point: 0,
             position: Vec3::ZERO,
             normal: Vec3::ZERO,
             penetration: 0.0,
-        };
-        let mut manifold = Self {
-            contacts: [nothing; N],
-            len: 0,
-        };
-        let Some(&deepest) = best(contacts, |c| Some(c.penetration)) else {
+        }; N],
+        len: 0,
+    };
+
+    /// Picks from `contacts`, found by a query with `margin` metres. The area is that of the polygon
+    /// of the picked points seen `along` a unit vector in the shell frame, such as the normal of
+    /// the field at the deepest point. Costs `N` passes.
+    ///
+    /// [`Query::manifold`] gives the same without a list of all contacts.
+    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
+        Self::pick(
+            || best(contacts, |c| Some(c.penetration)),
+            |_| along,
+            margin,
+            |polygon| best(contacts, |c| polygon.score(c)),
+        )
+    }
+
+    fn pick(
+        deepest: impl FnOnce() -> Option<Contact>,
+        along: impl FnOnce(&Contact) -> Vec3,
+        margin: f32,
+        next: impl Fn(&Polygon<N>) -> Option<Contact>,
+    ) -> Self {
+        let mut manifold = Self::EMPTY;
+        if N == 0 {
+            return manifold;
+        }
+        let Some(deepest) = deepest() else {
             return manifold;
         };
-        let close = (margin * CLOSE).max(f32::MIN_POSITIVE);
-        // Corners of the polygon in order, which is not the order of picking.
-        let mut ring = [Vec3::ZERO; N];
-        if N > 0 {
-            manifold.push(deepest);
-            ring[0] = deepest.position;
-        }
+        let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
+        manifold.push(deepest);
         while manifold.len < N {
-            let corners = &ring[..manifold.len];
-            let gain = |c: &Contact| {
-                let (_, area) = best_edge(corners, c.position, along);
-                let outside = (-c.penetration).max(0.0);
-                let far = outside / close;
-                let weight = 1.0 / (1.0 + far * far);
-                (area * weight > 0.0).then_some(area * weight)
-            };
-            let Some(&next) = best(contacts, gain) else {
+            let Some(next) = next(&polygon) else {
                 break;
             };
-            let (edge, _) = best_edge(corners, next.position, along);
-            ring.copy_within(edge + 1..manifold.len, edge + 2);
-            ring[edge + 1] = next.position;
+            polygon.insert(next.position);
             manifold.push(next);
-            if manifold.len == 3 && doubled_area(ring[0], ring[1], ring[2], along) < 0.0 {
-                // From here on the polygon runs counter-clockwise.
-                ring.swap(1, 2);
-            }
         }
         manifold
     }
@@ -78,8 +89,314 @@ impl<const N: usize> ContactManifold<N> {
     }
 }
 
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+    /// The manifold of the contact set, its area seen along the field's normal at the deepest
+    /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
+    ///
+    /// One search finds the deepest contact and those that count enough; should they be more than
+    /// 256, each further contact is searched for by itself.
+    pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
+        let mut near = Near::new(self.margin);
+        dispatch(
+            #[inline(always)]
+            || self.search(1, TOP, &mut near),
+        );
+        ContactManifold::pick(
+            || near.deepest,
+            |deepest| {
+                let at = self.rotation * deepest.position + self.translation;
+                let inward = self.rotation.transpose() * self.field.inward_direction(at);
+                if inward == Vec3::ZERO {
+                    deepest.normal
+                } else {
+                    inward
+                }
+            },
+            self.margin,
+            |polygon| {
+                let mut spread = Spread {
+                    polygon,
+                    least: f32::MIN_POSITIVE,
+                    found: None,
+                };
+                if near.is_full {
+                    dispatch(
+                        #[inline(always)]
+                        || self.search(1, TOP, &mut spread),
+                    );
+                } else {
+                    dispatch(
+                        #[inline(always)]
+                        || near.offer_to(self.tree, &mut spread),
+                    );
+                }
+                spread.found
+            },
+        )
+    }
+}
+
+/// How many contacts are kept for the manifold, on the stack.
+const KEPT: usize = 512;
+
+/// The deepest contact, and those that count enough.
+struct Near {
+    margin: f32,
+    /// Contacts less deep are not kept.
+    least: f32,
+    deepest: Option<Contact>,
+    kept: [(u32, f32); KEPT],
+    len: usize,
+    is_full: bool,
+}
+
+impl Near {
+    fn new(margin: f32) -> Self {
+        Self {
+            margin,
+            least: -margin,
+            deepest: None,
+            kept: [(0, 0.0); KEPT],
+            len: 0,
+            is_full: false,
+        }
+    }
+
+    /// Offers what was kept, several at a time.
+    #[inline(always)]
+    fn offer_to<const N: usize>(&self, tree: &PointSphereTree<'_>, spread: &mut Spread<'_, N>) {
+        let points = tree.points();
+        for kept in self.kept[..self.len].chunks(LANES) {
+            let mut positions = Points::default();
+            // Lanes that are not in use count nothing.
+            let mut penetrations = [f32::NEG_INFINITY; LANES];
+            for (lane, &(point, penetration)) in kept.iter().enumerate() {
+                positions.set(lane, Vec3::from_array(points[point as usize]));
+                penetrations[lane] = penetration;
+            }
+            let scores = spread
+                .polygon
+                .scores(positions.into(), f32x4::new(penetrations));
+            let mut better = scores.simd_ge(f32x4::splat(spread.least)).to_bitmask();
+            while better != 0 {
+                let (point, penetration) = kept[better.trailing_zeros() as usize];
+                better &= better - 1;
+                spread.offer(Contact {
+                    point,
+                    position: tree.point(point as usize),
+                    normal: tree.normal(point as usize),
+                    penetration,
+                });
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, contact: &Contact) {
+        if self.is_full {
+            return;
+        }
+        if self.len == KEPT {
+            // Some may have been kept before a deeper one was known.
+            let mut left = 0;
+            for i in 0..self.len {
+                if self.kept[i].1 >= self.least {
+                    self.kept[left] = self.kept[i];
+                    left += 1;
+                }
+            }
+            self.len = left;
+        }
+        if self.len == KEPT {
+            self.is_full = true;
+            self.least = self.deepest.map_or(-self.margin, |d| d.penetration);
+            return;
+        }
+        self.kept[self.len] = (contact.point, contact.penetration);
+        self.len += 1;
+    }
+}
+
+impl Goal for Near {
+    const BEST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn least(&self) -> f32 {
+        self.least
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, contact: Contact) -> bool {
+        if contact.penetration < self.least {
+            return true;
+        }
+        if self.deepest.as_ref().is_none_or(|d| contact.is_deeper(d)) {
+            self.deepest = Some(contact);
+            self.least = if self.is_full {
+                contact.penetration
+            } else {
+                least_deep(contact.penetration, self.margin)
+            };
+        }
+        self.keep(&contact);
+        true
+    }
+}
+
+/// From which penetration on contacts count enough beside the deepest.
+fn least_deep(deepest: f32, margin: f32) -> f32 {
+    let (outside, half) = ((-deepest).max(0.0), half_weight(margin));
+    let square = (outside * outside + half * half) / LEAST_WEIGHT - half * half;
+    -f32x4::splat(square).sqrt().to_array()[0].min(margin)
+}
+
+/// How far outside of the solid a contact counts half, in metres.
+fn half_weight(margin: f32) -> f32 {
+    (margin * CLOSE).max(f32::MIN_POSITIVE)
+}
+
+/// The contact that adds the most to a polygon.
+struct Spread<'p, const N: usize> {
+    polygon: &'p Polygon<N>,
+    least: f32,
+    found: Option<Contact>,
+}
+
+impl<const N: usize> Goal for Spread<'_, N> {
+    const BEST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
+        self.polygon.bounds(discs, penetrations)
+    }
+
+    #[inline(always)]
+    fn least(&self) -> f32 {
+        self.least
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, contact: Contact) -> bool {
+        if let Some(score) = self.polygon.score(&contact) {
+            let is_first = |best: &Contact| {
+                score > self.least || score == self.least && contact.point < best.point
+            };
+            if self.found.as_ref().is_none_or(is_first) {
+                self.least = score;
+                self.found = Some(contact);
+            }
+        }
+        true
+    }
+}
+
+/// The picked points as a polygon that grows.
+struct Polygon<const N: usize> {
+    /// Corners in order, counter-clockwise, which is not the order of picking.
+    corners: [Vec3; N],
+    /// For each corner the outward direction in the plane of the polygon from the edge to the next
+    /// one, as long as that edge.
+    outward: [Vec3; N],
+    len: usize,
+    along: Vec3,
+    /// How far outside of the solid a contact counts half, in metres.
+    half: f32,
+    /// From which penetration on contacts count enough.
+    least: f32,
+}
+
+impl<const N: usize> Polygon<N> {
+    fn new(first: &Contact, along: Vec3, margin: f32) -> Self {
+        Self {
+            corners: [first.position; N],
+            outward: [Vec3::ZERO; N],
+            len: 1,
+            along,
+            half: half_weight(margin),
+            least: least_deep(first.penetration, margin),
+        }
+    }
+
+    /// What a contact adds, weighted; `None` if nothing.
+    fn score(&self, contact: &Contact) -> Option<f32> {
+        let position = Vectors::splat(contact.position);
+        let penetration = f32x4::splat(contact.penetration);
+        let score = self.scores(position, penetration).to_array()[0];
+        (score > 0.0).then_some(score)
+    }
+
+    /// What contacts add, weighted.
+    #[inline(always)]
+    fn scores(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
+        self.gains(positions, f32x4::ZERO) * self.weights(penetrations)
+    }
+
+    /// The highest score of any contact in a disc.
+    #[inline(always)]
+    fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
+        // More than rounding can make of it.
+        const ROUNDED: f32 = 1.0 + 1e-5;
+        let centers = Vectors::from(discs.centers);
+        let radii = f32x4::new(discs.radii);
+        let far = centers.minus(Vectors::splat(self.corners[0])).length() + radii;
+        let reach = radii + far * 1e-6;
+        self.gains(centers, reach) * self.weights(penetrations) * ROUNDED
+    }
+
+    #[inline(always)]
+    fn weights(&self, penetrations: f32x4) -> f32x4 {
+        let outside = (-penetrations).fast_max(f32x4::ZERO) / self.half;
+        let weights = f32x4::ONE / (outside * outside + 1.0);
+        let counts = penetrations.simd_ge(f32x4::splat(self.least));
+        counts & weights
+    }
+
+    /// How much points add at most that are no further than `reach` from these: a length for a
+    /// single corner, otherwise twice an area, only what lies outside of the polygon.
+    #[inline(always)]
+    fn gains(&self, points: Vectors, reach: f32x4) -> f32x4 {
+        if self.len == 1 {
+            return points.minus(Vectors::splat(self.corners[0])).length() + reach;
+        }
+        let mut most = f32x4::ZERO;
+        for edge in 0..self.len {
+            let gain = self.beyond(edge, points) + reach * self.outward[edge].length();
+            most = most.fast_max(gain);
+        }
+        most
+    }
+
+    /// Twice the area of the triangles over an edge, positive outside of the polygon.
+    #[inline(always)]
+    fn beyond(&self, edge: usize, points: Vectors) -> f32x4 {
+        let from_corner = points.minus(Vectors::splat(self.corners[edge]));
+        from_corner.dot(Vectors::splat(self.outward[edge]))
+    }
+
+    /// Puts a corner in behind the edge it adds the most to.
+    fn insert(&mut self, point: Vec3) {
+        let beyond = |edge: usize| self.beyond(edge, Vectors::splat(point)).to_array()[0];
+        let better = |best: usize, edge: usize| {
+            if beyond(edge) > beyond(best) {
+                edge
+            } else {
+                best
+            }
+        };
+        let edge = (0..self.len).fold(0, better);
+        self.corners.copy_within(edge + 1..self.len, edge + 2);
+        self.corners[edge + 1] = point;
+        self.len += 1;
+        for edge in 0..self.len {
+            // With two corners there is an edge each way.
+            let to_next = self.corners[(edge + 1) % self.len] - self.corners[edge];
+            self.outward[edge] = to_next.cross(self.along);
+        }
+    }
+}
+
 /// The first contact with the largest score; those without one are left out.
-fn best(contacts: &[Contact], score: impl Fn(&Contact) -> Option<f32>) -> Option<&Contact> {
+fn best(contacts: &[Contact], score: impl Fn(&Contact) -> Option<f32>) -> Option<Contact> {
     let mut best: Option<(f32, &Contact)> = None;
     for contact in contacts {
         if let Some(score) = score(contact)
@@ -88,34 +405,7 @@ fn best(contacts: &[Contact], score: impl Fn(&Contact) -> Option<f32>) -> Option
             best = Some((score, contact));
         }
     }
-    best.map(|(_, contact)| contact)
-}
-
-/// The edge of a polygon behind which `point` adds the most, and how much: a length for a single
-/// corner, otherwise twice an area, only what lies outside of the polygon.
-fn best_edge(corners: &[Vec3], point: Vec3, normal: Vec3) -> (usize, f32) {
-    match *corners {
-        [a] => (0, point.distance(a)),
-        [a, b] => (1, doubled_area(a, b, point, normal).abs()),
-        _ => {
-            let gain = |i: usize| {
-                let next = corners[(i + 1) % corners.len()];
-                // Negative on the outer side of a counter-clockwise edge.
-                -doubled_area(corners[i], next, point, normal)
-            };
-            (0..corners.len())
-                .map(|i| (i, gain(i)))
-                .fold(
-                    (0, 0.0),
-                    |most, edge| if edge.1 > most.1 { edge } else { most },
-                )
-        }
-    }
-}
-
-/// Twice the area of a triangle seen along `normal`, positive when it runs counter-clockwise.
-fn doubled_area(a: Vec3, b: Vec3, c: Vec3, normal: Vec3) -> f32 {
-    (b - a).cross(c - a).dot(normal)
+    best.map(|(_, contact)| *contact)
 }
 
 #[cfg(test)]
@@ -161,11 +451,14 @@ mod tests {
     #[test]
     fn a_point_that_touches_comes_before_one_above_it() {
         let mut contacts = std::vec![contact(0, 0.0, 0.0, 0.01), contact(1, 4.0, 0.0, 0.0)];
-        // A little further out, and half of the margin away.
-        contacts.push(contact(2, 4.5, 0.0, -0.05));
+        // A little further out, where it counts a third.
+        contacts.push(contact(2, 4.5, 0.0, -0.0015));
         assert_eq!(picked::<2>(&contacts), [0, 1]);
         contacts.remove(1);
         assert_eq!(picked::<2>(&contacts), [0, 2]);
+        // Where it counts too little.
+        contacts[1].penetration = -0.05;
+        assert_eq!(picked::<2>(&contacts), [0]);
     }
 
     #[test]

@@ -1,6 +1,10 @@
 use glamx::{Mat3, Pose3, Vec3};
 
-use crate::{DistanceField, MAX_LEVELS, PointSphereTree};
+use crate::dispatch::dispatch;
+use crate::lanes::Vectors;
+use crate::search::Goal;
+use crate::work::{CountWork, Work};
+use crate::{DistanceField, PointSphereTree};
 
 /// A shell point found in the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,56 +19,76 @@ pub struct Contact {
     pub penetration: f32,
 }
 
-/// The penalty force and torque of a contact set (eqs. 2 and 3).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wrench {
-    /// Sum of Vn over the contacts, in metres: newtons once multiplied by a stiffness in N/m. In
-    /// the shell frame, acting on the shell's body.
-    pub force: Vec3,
-    /// Sum of r × Vn with r from the point the torque is about, in square metres, in the shell
-    /// frame.
-    pub torque: Vec3,
+impl Contact {
+    /// Whether it comes before another as the deepest: the first of equally deep ones does.
+    #[inline]
+    pub(crate) fn is_deeper(&self, other: &Self) -> bool {
+        self.penetration > other.penetration
+            || self.penetration == other.penetration && self.point < other.point
+    }
 }
 
-/// A pointshell posed in a distance field (sections 2.2 and 2.3).
+/// A pointshell posed in a distance field (sections 2.2 to 2.4).
 ///
 /// A point is in contact when its penetration is at least 0, or at least −margin. Every query
-/// gives the same contacts: [`for_each_contact_flat`](Self::for_each_contact_flat) tests all
-/// points, the others only those in balls that may reach the field. With a pose that is not
-/// finite there are none.
-#[derive(Clone, Copy, Debug)]
-pub struct Query<'q, F: ?Sized> {
-    tree: &'q PointSphereTree<'q>,
-    field: &'q F,
-    rotation: Mat3,
-    translation: Vec3,
-    margin: f32,
-    ball_slack: f32,
+/// gives the same as a test of all points
+/// ([`for_each_contact_flat`](Self::for_each_contact_flat)), but looks only at what may matter to
+/// it. With a pose that is not finite there are no contacts.
+#[derive(Debug)]
+pub struct Query<'q, F: ?Sized, W = ()> {
+    pub(crate) tree: &'q PointSphereTree<'q>,
+    pub(crate) field: &'q F,
+    pub(crate) rotation: Mat3,
+    pub(crate) translation: Vec3,
+    /// Whether the pose is finite.
+    pub(crate) is_posed: bool,
+    pub(crate) margin: f32,
+    /// A ball and the points in it are moved by rounding, each on its own.
+    pub(crate) ball_slack: f32,
+    pub(crate) work: W,
 }
+
+impl<F: ?Sized, W: Copy> Clone for Query<'_, F, W> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: ?Sized, W: Copy> Copy for Query<'_, F, W> {}
 
 impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     /// A query for contacts; `shell_to_field` takes shell coordinates to field coordinates.
     pub fn new(tree: &'q PointSphereTree<'q>, field: &'q F, shell_to_field: Pose3) -> Self {
-        // A NaN is in contact with nothing, an infinity might be.
-        let translation = if shell_to_field.is_finite() {
-            shell_to_field.translation
-        } else {
-            Vec3::NAN
-        };
-        let bounds = tree.bounds();
-        let size = bounds.min.abs().max(bounds.max.abs()).length();
-        let reach = size + translation.length();
+        let translation = shell_to_field.translation;
+        let reach = tree.reach() + translation.length();
         Self {
             tree,
             field,
             rotation: Mat3::from_quat(shell_to_field.rotation),
             translation,
+            is_posed: shell_to_field.is_finite(),
             margin: 0.0,
-            // A ball and the points in it are moved by rounding, each on its own.
             ball_slack: 16.0 * f32::EPSILON * reach,
+            work: (),
         }
     }
 
+    /// The same query, counting what it looks at.
+    pub fn counting<'w>(self, work: &'w Work) -> Query<'q, F, &'w Work> {
+        Query {
+            tree: self.tree,
+            field: self.field,
+            rotation: self.rotation,
+            translation: self.translation,
+            is_posed: self.is_posed,
+            margin: self.margin,
+            ball_slack: self.ball_slack,
+            work,
+        }
+    }
+}
+
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Also gives the points that are up to `margin` metres away from the solid.
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
@@ -74,109 +98,175 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     ///
     /// Algorithm 1, with two differences that change no result: the tree is walked depth first
     /// (which needs no queue), and a parent point is tested once, with the leaf it belongs to.
-    pub fn for_each_contact(&self, mut visit: impl FnMut(Contact)) {
-        self.search(|contact| {
-            visit(contact);
-            true
-        });
+    pub fn for_each_contact(&self, visit: impl FnMut(Contact)) {
+        let mut all = All::new(self.margin, visit);
+        dispatch(
+            #[inline(always)]
+            || self.search(1, TOP, &mut all),
+        );
     }
 
     /// Calls `visit` with every contact, testing every point (MPT99): what the tree is measured
     /// against.
-    pub fn for_each_contact_flat(&self, mut visit: impl FnMut(Contact)) {
-        for index in 0..self.tree.point_count() {
-            if let Some(contact) = self.test_point(index) {
-                visit(contact);
-            }
-        }
+    pub fn for_each_contact_flat(&self, visit: impl FnMut(Contact)) {
+        let mut all = All::new(self.margin, visit);
+        let range = (0, self.tree.point_count() as u32);
+        dispatch(
+            #[inline(always)]
+            || self.offer_points(range, &mut all),
+        );
     }
 
     /// Whether there is any contact; stops at the first.
     pub fn touches(&self) -> bool {
-        let mut found = false;
-        self.search(|_| {
-            found = true;
-            false
-        });
-        found
+        let mut any = Any {
+            margin: self.margin,
+            found: false,
+        };
+        dispatch(
+            #[inline(always)]
+            || self.search(1, TOP, &mut any),
+        );
+        any.found
     }
 
     /// The contact with the largest penetration δ, the first of equally deep ones.
+    ///
+    /// Branch and bound: clusters that cannot hold a deeper point are left out.
     pub fn deepest(&self) -> Option<Contact> {
-        let mut deepest: Option<Contact> = None;
-        self.for_each_contact(|contact| {
-            if deepest.is_none_or(|d| contact.penetration > d.penetration) {
-                deepest = Some(contact);
-            }
-        });
-        deepest
+        let mut deepest = Deepest::new(self.margin);
+        dispatch(
+            #[inline(always)]
+            || self.search(1, TOP, &mut deepest),
+        );
+        deepest.found
     }
 
-    /// Penalty force and torque about `center` (shell frame), for stiffness one (eqs. 2 and 3).
-    /// Points within the margin but outside of the solid add nothing.
-    pub fn wrench(&self, center: Vec3) -> Wrench {
-        let mut wrench = Wrench::default();
-        self.for_each_contact(|contact| {
-            let force = contact.penetration.max(0.0) * contact.normal;
-            wrench.force += force;
-            wrench.torque += (contact.position - center).cross(force);
-        });
-        wrench
+    /// The point of the shell with the largest penetration, however far outside: where the bodies
+    /// are closest if they are apart, the negative of its penetration being their separation
+    /// (section 2.2), and the [`deepest`](Self::deepest) if they are not. `None` only for a pose
+    /// that is not finite.
+    pub fn closest(&self) -> Option<Contact>
+    where
+        W: Copy,
+    {
+        self.with_margin(f32::INFINITY).deepest()
     }
 
-    /// Walks the tree until `visit` returns false.
-    fn search(&self, mut visit: impl FnMut(Contact) -> bool) {
-        let leaf_level = self.tree.level_count() as usize;
-        // The children of one cluster a level that are still to be looked at.
-        let mut open = [(0_u32, 0_u32); MAX_LEVELS + 1];
-        let mut level = 1;
-        open[level] = (0, 1);
-        while level > 0 {
-            let (next, end) = open[level];
-            if next == end {
-                level -= 1;
-                continue;
-            }
-            open[level].0 += 1;
-            let cluster = self.tree.level(level as u32)[next as usize];
-            let center = self.to_field(Vec3::from_array(cluster.center));
-            let radius = cluster.radius + self.ball_slack;
-            // Written so that a NaN from a broken pose ends the search.
-            let may_touch = self.field.penetration_bound(center, radius) >= -self.margin;
-            if !may_touch {
-                continue;
-            }
-            let children = (cluster.first, cluster.first + cluster.count);
-            if level < leaf_level {
-                level += 1;
-                open[level] = children;
-                continue;
-            }
-            for index in children.0..children.1 {
-                if let Some(contact) = self.test_point(index as usize)
-                    && !visit(contact)
-                {
-                    return;
-                }
-            }
+    /// A single point, if it is in contact.
+    pub(crate) fn test_point(&self, point: u32) -> Option<Contact> {
+        let mut found = Deepest::new(self.margin);
+        self.offer_points((point, point + 1), &mut found);
+        found.found
+    }
+
+    #[inline(always)]
+    pub(crate) fn to_field(&self, points: Vectors) -> Vectors {
+        points
+            .rotated(&self.rotation)
+            .plus(Vectors::splat(self.translation))
+    }
+}
+
+/// The clusters of level 1.
+pub(crate) const TOP: (u32, u32) = (0, 1);
+
+/// Everything within the margin, in order.
+pub(crate) struct Every {
+    pub(crate) margin: f32,
+}
+
+impl Goal for Every {
+    const BEST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn least(&self) -> f32 {
+        -self.margin
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, _contact: Contact) -> bool {
+        true
+    }
+}
+
+/// All contacts.
+pub(crate) struct All<V> {
+    margin: f32,
+    visit: V,
+}
+
+impl<V: FnMut(Contact)> All<V> {
+    pub(crate) fn new(margin: f32, visit: V) -> Self {
+        Self { margin, visit }
+    }
+}
+
+impl<V: FnMut(Contact)> Goal for All<V> {
+    const BEST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn least(&self) -> f32 {
+        -self.margin
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, contact: Contact) -> bool {
+        (self.visit)(contact);
+        true
+    }
+}
+
+/// Whether there is a contact.
+struct Any {
+    margin: f32,
+    found: bool,
+}
+
+impl Goal for Any {
+    const BEST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn least(&self) -> f32 {
+        -self.margin
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, _contact: Contact) -> bool {
+        self.found = true;
+        false
+    }
+}
+
+/// The deepest contact.
+pub(crate) struct Deepest {
+    least: f32,
+    pub(crate) found: Option<Contact>,
+}
+
+impl Deepest {
+    pub(crate) fn new(margin: f32) -> Self {
+        Self {
+            least: -margin,
+            found: None,
         }
     }
+}
 
-    fn test_point(&self, index: usize) -> Option<Contact> {
-        let position = self.tree.point(index);
-        let normal = self.tree.normal(index);
-        let penetration = self
-            .field
-            .penetration(self.to_field(position), self.rotation * normal);
-        (penetration >= -self.margin).then_some(Contact {
-            point: index as u32,
-            position,
-            normal,
-            penetration,
-        })
+impl Goal for Deepest {
+    const BEST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn least(&self) -> f32 {
+        self.least
     }
 
-    fn to_field(&self, point: Vec3) -> Vec3 {
-        self.rotation * point + self.translation
+    #[inline(always)]
+    fn offer(&mut self, contact: Contact) -> bool {
+        if self.found.as_ref().is_none_or(|f| contact.is_deeper(f)) {
+            self.least = contact.penetration;
+            self.found = Some(contact);
+        }
+        true
     }
 }

@@ -13,6 +13,7 @@ pub enum Storage<'a, T> {
 impl<T> Deref for Storage<'_, T> {
     type Target = [T];
 
+    #[inline]
     fn deref(&self) -> &[T] {
         match self {
             Self::Borrowed(slice) => slice,

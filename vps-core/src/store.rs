@@ -2,7 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
+use wide::{f32x4, i32x4};
 
+use crate::lanes::{LANES, Points, Vectors};
 use crate::{Storage, VoxelmapError};
 
 /// Voxels along the edge of a cell of a sparse [`Store`].
@@ -96,6 +98,7 @@ pub struct RefinedCell {
 #[derive(Clone, Debug)]
 pub struct Store<'a> {
     dims: [u32; 3],
+    cell_dims: [u32; 3],
     values: Values<'a>,
     layout: Layout<'a>,
 }
@@ -135,6 +138,7 @@ impl<'a> Store<'a> {
     pub fn dense(dims: [u32; 3], values: Values<'a>) -> Result<Self, VoxelmapError> {
         Self {
             dims,
+            cell_dims: cell_dims(dims),
             values,
             layout: Layout::Dense,
         }
@@ -186,6 +190,7 @@ impl<'a> Store<'a> {
         });
         Self {
             dims,
+            cell_dims,
             values,
             layout,
         }
@@ -193,6 +198,9 @@ impl<'a> Store<'a> {
     }
 
     fn checked(self, expected: usize) -> Result<Self, VoxelmapError> {
+        if self.dims.iter().any(|&n| n < 2) {
+            return Err(VoxelmapError::Thin(self.dims));
+        }
         if self.values.len() != expected {
             return Err(VoxelmapError::ValueCount {
                 values: self.values.len(),
@@ -207,7 +215,14 @@ impl<'a> Store<'a> {
         Ok(self)
     }
 
+    /// Cells of 8 x 8 x 8 voxels along x, y and z.
+    #[inline]
+    pub(crate) fn cell_dims(&self) -> [u32; 3] {
+        self.cell_dims
+    }
+
     /// Voxels along x, y and z.
+    #[inline]
     pub fn dims(&self) -> [u32; 3] {
         self.dims
     }
@@ -237,6 +252,7 @@ impl<'a> Store<'a> {
     }
 
     /// The value of a voxel.
+    #[inline]
     pub fn value(&self, voxel: [u32; 3]) -> f32 {
         match &self.values {
             Values::Integers(values) => self.read(values).value(voxel),
@@ -244,15 +260,23 @@ impl<'a> Store<'a> {
         }
     }
 
-    /// The values of the voxel `corner` and its next neighbours along each axis, interpolated at
-    /// `t`, between 0 and 1. The neighbours must be in the grid, or `t` be 0 towards them.
-    pub(crate) fn interpolated(&self, corner: [u32; 3], t: Vec3) -> f32 {
+    /// What lies between the voxels `corners` and their next neighbours along each axis at `t`,
+    /// between 0 and 1, and how much it grows per voxel there. Only so many lanes are read; the
+    /// others repeat the first.
+    #[inline(always)]
+    pub(crate) fn interpolated(
+        &self,
+        corners: [[u32; 3]; LANES],
+        t: Vectors,
+        lanes: usize,
+    ) -> (f32x4, Vectors) {
         match &self.values {
-            Values::Integers(values) => self.read(values).interpolated(corner, t),
-            Values::Floats(values) => self.read(values).interpolated(corner, t),
+            Values::Integers(values) => self.read(values).interpolated(corners, t, lanes),
+            Values::Floats(values) => self.read(values).interpolated(corners, t, lanes),
         }
     }
 
+    #[inline(always)]
     fn read<'r, T>(&'r self, values: &'r [T]) -> Reader<'r, T> {
         Reader {
             dims: self.dims,
@@ -265,6 +289,7 @@ impl<'a> Store<'a> {
     pub(crate) fn into_owned(self) -> Store<'static> {
         Store {
             dims: self.dims,
+            cell_dims: self.cell_dims,
             values: self.values.into_owned(),
             layout: match self.layout {
                 Layout::Dense => Layout::Dense,
@@ -296,7 +321,8 @@ struct Parts<'r> {
     bricks: usize,
 }
 
-impl<T: Copy + Into<f32>> Reader<'_, T> {
+impl<T: Value> Reader<'_, T> {
+    #[inline(always)]
     fn get(&self, index: usize) -> f32 {
         self.values[index].into()
     }
@@ -307,159 +333,351 @@ impl<T: Copy + Into<f32>> Reader<'_, T> {
             Layout::Sparse(sparse) => {
                 let parts = sparse.parts();
                 let cell = voxel.map(|c| c / CELL);
-                self.value_in(parts, cell, parts.refined(cell), voxel)
+                let local = voxel.map(|c| (c % CELL) as usize);
+                self.value_in(parts, cell, parts.refined(cell), local)
             }
         }
     }
 
-    fn interpolated(&self, corner: [u32; 3], t: Vec3) -> f32 {
-        let next = [0, 1, 2].map(|a| (corner[a] + 1).min(self.dims[a] - 1));
-        let at = |i: usize| {
-            let pick = |a: usize| if i >> a & 1 == 1 { next[a] } else { corner[a] };
-            [pick(0), pick(1), pick(2)]
-        };
-        let Layout::Sparse(sparse) = self.layout else {
-            let value = |i| self.get(linear(self.dims, at(i)));
-            return lerp_eight(core::array::from_fn(value), t);
-        };
-        let parts = sparse.parts();
-        let cell = corner.map(|c| c / CELL);
-        let refined = parts.refined(cell);
-        let last = next.map(|c| c / CELL);
-        if last == cell {
-            let Some(number) = refined else {
-                // Trilinear between the voxels of a trilinear cell: the cell's own function.
-                let local = Vec3::from_array(corner.map(|c| (c % CELL) as f32)) + t;
-                return self.coarse(parts, cell, local / CELL as f32);
-            };
-            if let Some(values) = self.eight_stored(parts, number, corner, next) {
-                return lerp_eight(values, t);
+    #[inline(always)]
+    fn interpolated(
+        &self,
+        corners: [[u32; 3]; LANES],
+        t: Vectors,
+        lanes: usize,
+    ) -> (f32x4, Vectors) {
+        let mut rows = [[[T::zeroed(); 2]; LANES]; 4];
+        match self.layout {
+            Layout::Dense => {
+                let offsets = row_offsets(self.dims);
+                for lane in 0..lanes {
+                    let first = linear(self.dims, corners[lane]);
+                    for (row, offset) in rows.iter_mut().zip(offsets) {
+                        row[lane] = self.pair(first + offset);
+                    }
+                }
+                Eight::of(&rows).interpolated(t)
             }
-            if let Some(value) = self.in_octant(parts, number, corner, next, t) {
-                return value;
+            Layout::Sparse(sparse) => {
+                let parts = sparse.parts();
+                // Values that lie further apart than voxels, and where between them.
+                let mut between = Points::from(t);
+                let mut per_voxel = [1.0; LANES];
+                let mut mixed: [Option<[f32; 8]>; LANES] = [None; LANES];
+                for lane in 0..lanes {
+                    match self.around(parts, corners[lane]) {
+                        Around::Rows(values) => {
+                            for (row, values) in rows.iter_mut().zip(values) {
+                                row[lane] = values;
+                            }
+                        }
+                        Around::Coarse(values, local, step) => {
+                            for (row, values) in rows.iter_mut().zip(values) {
+                                row[lane] = values;
+                            }
+                            per_voxel[lane] = step;
+                            between.x[lane] = (local[0] as f32 + between.x[lane]) * step;
+                            between.y[lane] = (local[1] as f32 + between.y[lane]) * step;
+                            between.z[lane] = (local[2] as f32 + between.z[lane]) * step;
+                        }
+                        Around::Mixed(values) => mixed[lane] = Some(values),
+                    }
+                }
+                let mut eight = Eight::of(&rows);
+                for (lane, mixed) in mixed.into_iter().enumerate() {
+                    if let Some(values) = mixed {
+                        eight.set(lane, values);
+                    }
+                }
+                let (value, slope) = eight.interpolated(between.into());
+                (value, slope.times(f32x4::new(per_voxel)))
             }
-            let value = |i| self.value_in(parts, cell, refined, at(i));
-            return lerp_eight(core::array::from_fn(value), t);
         }
-        // Voxels on both sides of a face between cells, or around an edge or a corner.
-        let mut known = (cell, refined);
-        let mut found = (last, parts.refined(last));
-        let value = |i| {
-            let voxel = at(i);
-            let its_cell = voxel.map(|c| c / CELL);
-            if its_cell != known.0 {
-                core::mem::swap(&mut known, &mut found);
-                if its_cell != known.0 {
-                    known = (its_cell, parts.refined(its_cell));
+    }
+
+    /// Two values next to each other.
+    #[inline(always)]
+    fn pair(&self, first: usize) -> [T; 2] {
+        let pair = &self.values[first..first + 2];
+        [pair[0], pair[1]]
+    }
+
+    /// What a sparse store has around the voxel `corner` and its next neighbours.
+    #[inline(always)]
+    fn around(&self, parts: Parts<'_>, corner: [u32; 3]) -> Around<T> {
+        let [x, y, z] = corner;
+        let cell = [x / CELL, y / CELL, z / CELL];
+        let local = [
+            (x % CELL) as usize,
+            (y % CELL) as usize,
+            (z % CELL) as usize,
+        ];
+        let last = CELL as usize - 1;
+        let crosses = [local[0] == last, local[1] == last, local[2] == last];
+        let refined = parts.refined(cell);
+        if !(crosses[0] | crosses[1] | crosses[2]) {
+            let Some(number) = refined else {
+                return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
+            };
+            if let Some(rows) = self.all_stored(parts, number, local) {
+                return Around::Rows(rows);
+            }
+            if let Some(octant) = self.octant_alone(parts, number, local) {
+                return octant;
+            }
+        } else if refined.is_none() && parts.none_refined(cell, crosses) {
+            // Behind the face lie values of the lattice, up to which this cell reaches.
+            return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
+        }
+        self.one_by_one(parts, cell, refined, local, crosses)
+    }
+
+    /// Voxels on both sides of a face between cells, or around an edge or a corner; or some stored
+    /// and some not.
+    #[inline(always)]
+    fn one_by_one(
+        &self,
+        parts: Parts<'_>,
+        cell: [u32; 3],
+        refined: Option<usize>,
+        local: [usize; 3],
+        crosses: [bool; 3],
+    ) -> Around<T> {
+        // The numbers of the cells, by the faces that lie between.
+        let mut numbers = [refined; 8];
+        let mut stored = [T::zeroed(); 8];
+        let mut all_stored = true;
+        let neighbour = |i: usize| {
+            let mut at = (cell, local);
+            for a in 0..3 {
+                if i >> a & 1 == 1 {
+                    at.0[a] += u32::from(crosses[a]);
+                    at.1[a] = if crosses[a] { 0 } else { local[a] + 1 };
                 }
             }
-            self.value_in(parts, its_cell, known.1, voxel)
+            at
         };
-        lerp_eight(core::array::from_fn(value), t)
+        for i in 0..8 {
+            let (its_cell, its_local) = neighbour(i);
+            // The last axis along which a face lies between, if any.
+            let crossed = (0..3).rev().find(|&a| i >> a & 1 == 1 && crosses[a]);
+            let stepped = (0..3).rev().find(|&a| i >> a & 1 == 1);
+            if let Some(last) = stepped {
+                numbers[i] = match crossed {
+                    Some(axis) if axis == last => parts.refined(its_cell),
+                    _ => numbers[i & !(1 << last)],
+                };
+            }
+            let brick = numbers[i].and_then(|n| parts.brick(n, its_local));
+            match brick {
+                Some(index) => stored[i] = self.values[index],
+                None => all_stored = false,
+            }
+        }
+        if all_stored {
+            let [a, b, c, d, e, f, g, h] = stored;
+            return Around::Rows([[a, b], [c, d], [e, f], [g, h]]);
+        }
+        let mut values = [0.0; 8];
+        for (i, value) in values.iter_mut().enumerate() {
+            let (its_cell, its_local) = neighbour(i);
+            *value = self.value_in(parts, its_cell, numbers[i], its_local);
+        }
+        Around::Mixed(values)
     }
 
-    /// The eight values between two voxels of a refined cell, if all are stored.
-    #[inline]
-    fn eight_stored(
+    /// The eight values from a voxel of a refined cell on, if all are stored.
+    #[inline(always)]
+    fn all_stored(
         &self,
         parts: Parts<'_>,
         number: usize,
-        low: [u32; 3],
-        high: [u32; 3],
-    ) -> Option<[f32; 8]> {
+        [x, y, z]: [usize; 3],
+    ) -> Option<[[T; 2]; 4]> {
         let cell = parts.cells[number];
-        let [x, y, z] = low.map(|c| (c % CELL) as usize);
-        let [x1, y1, z1] = high.map(|c| (c % CELL) as usize);
         // Bricks next to each other along x are so among those stored.
-        let pair = 1_u64 << (x / 2) | 1_u64 << (x1 / 2);
-        let mut values = [0.0; 8];
-        for (i, (y, z)) in [(y, z), (y1, z), (y, z1), (y1, z1)].into_iter().enumerate() {
-            let row = ((z / 2) * 4 + y / 2) * 4;
-            if cell.bricks >> row & pair != pair {
+        let pair = 1_u64 << (x / 2) | 1_u64 << x.div_ceil(2);
+        let mut rows = [[T::zeroed(); 2]; 4];
+        for (i, row) in rows.iter_mut().enumerate() {
+            let (y, z) = (y + (i & 1), z + (i >> 1));
+            let bricks = ((z / 2) * 4 + y / 2) * 4;
+            if cell.bricks >> bricks & pair != pair {
                 return None;
             }
-            let before = (cell.bricks & ((1 << (row + x / 2)) - 1)).count_ones();
+            let before = (cell.bricks & ((1 << (bricks + x / 2)) - 1)).count_ones();
             let first = parts.bricks + (cell.first + before) as usize * BRICK_VALUES;
-            let within = first + ((z % 2) * 2 + y % 2) * 2;
-            values[2 * i] = self.get(within + x % 2);
-            values[2 * i + 1] = self.get(within + (x1 / 2 - x / 2) * BRICK_VALUES + x1 % 2);
+            let within = first + ((z % 2) * 2 + y % 2) * 2 + x % 2;
+            // The next one in this brick, or the first one of the same row in the next.
+            let next = if x % 2 == 0 { 1 } else { BRICK_VALUES - 1 };
+            *row = [self.values[within], self.values[within + next]];
         }
-        Some(values)
+        Some(rows)
+    }
+
+    /// The octant of a refined cell a voxel lies in, if its values and those of the next voxels
+    /// are interpolated in it.
+    #[inline(always)]
+    fn octant_alone(
+        &self,
+        parts: Parts<'_>,
+        number: usize,
+        local: [usize; 3],
+    ) -> Option<Around<T>> {
+        let [x, y, z] = local;
+        let along = |l: usize| 1_u64 << (l / 2) | 1_u64 << l.div_ceil(2);
+        // Spread over rows of 4 bricks, and planes of 16.
+        let rows = |l: usize| {
+            along(l) & 1 | (along(l) & 2) << 3 | (along(l) & 4) << 6 | (along(l) & 8) << 9
+        };
+        let planes = |l: usize| {
+            along(l) & 1 | (along(l) & 2) << 15 | (along(l) & 4) << 30 | (along(l) & 8) << 45
+        };
+        // No carries: each product puts copies of one pattern side by side.
+        let bricks = along(x) * rows(y) * planes(z);
+        if parts.cells[number].bricks & bricks != 0 {
+            return None;
+        }
+        let octant = [x / 4, y / 4, z / 4];
+        let within = [x % 4, y % 4, z % 4];
+        Some(Around::Coarse(
+            self.octant(parts, number, octant),
+            within,
+            0.25,
+        ))
     }
 
     /// The value of a voxel in a cell, given the cell's number among the refined ones.
-    #[inline]
+    #[inline(always)]
     fn value_in(
         &self,
         parts: Parts<'_>,
         cell: [u32; 3],
         refined: Option<usize>,
-        voxel: [u32; 3],
+        local: [usize; 3],
     ) -> f32 {
-        let local = voxel.map(|c| c % CELL);
-        let Some(refined) = refined else {
-            let t = Vec3::from_array(local.map(|c| c as f32)) / CELL as f32;
-            return self.coarse(parts, cell, t);
+        let [x, y, z] = local;
+        let Some(number) = refined else {
+            let t = Vec3::new(x as f32, y as f32, z as f32) / CELL as f32;
+            return lerp_one(self.lattice(parts, cell), t);
         };
-        let cell = parts.cells[refined];
-        let [x, y, z] = local.map(|c| c as usize);
-        let bit = 1_u64 << (((z / 2) * 4 + y / 2) * 4 + x / 2);
-        if cell.bricks & bit != 0 {
-            let before = (cell.bricks & (bit - 1)).count_ones();
-            let brick = (cell.first + before) as usize;
-            let within = ((z % 2) * 2 + y % 2) * 2 + x % 2;
-            return self.get(parts.bricks + brick * BRICK_VALUES + within);
+        if let Some(index) = parts.brick(number, local) {
+            return self.get(index);
         }
-        let t = Vec3::from_array(local.map(|c| (c % 4) as f32)) / 4.0;
-        self.middle(parts, refined, [x / 4, y / 4, z / 4], t)
+        let t = Vec3::new((x % 4) as f32, (y % 4) as f32, (z % 4) as f32) / 4.0;
+        lerp_one(self.octant(parts, number, [x / 4, y / 4, z / 4]), t)
     }
 
-    /// An octant of a refined cell, interpolated at `t`.
-    #[inline]
-    fn middle(&self, parts: Parts<'_>, number: usize, [x, y, z]: [usize; 3], t: Vec3) -> f32 {
+    /// The corners of an octant of a refined cell.
+    #[inline(always)]
+    fn octant(&self, parts: Parts<'_>, number: usize, [x, y, z]: [usize; 3]) -> [[T; 2]; 4] {
         let first = parts.middles + number * MIDDLE_VALUES + (z * 3 + y) * 3 + x;
-        let at = |i: usize| self.get(first + (i & 1) + (i >> 1 & 1) * 3 + (i >> 2) * 9);
-        lerp_eight(core::array::from_fn(at), t)
+        let row = |offset| self.pair(first + offset);
+        [row(0), row(3), row(9), row(12)]
     }
 
-    /// Between two voxels of a refined cell none of whose bricks are stored, and which lie in one
-    /// octant: the octant's own function.
-    #[inline]
-    fn in_octant(
-        &self,
-        parts: Parts<'_>,
-        number: usize,
-        low: [u32; 3],
-        high: [u32; 3],
-        t: Vec3,
-    ) -> Option<f32> {
-        let octant = low.map(|c| c % CELL / 4);
-        if high.map(|c| c % CELL / 4) != octant {
-            return None;
-        }
-        let [x, y, z] = octant.map(|c| c as usize);
-        // The 2 x 2 x 2 bricks of an octant.
-        let bricks = 0x0033_0033_u64 << ((z * 8 + y * 2) * 4 + x * 2);
-        if parts.cells[number].bricks & bricks != 0 {
-            return None;
-        }
-        let local = Vec3::from_array(low.map(|c| (c % 4) as f32)) + t;
-        Some(self.middle(parts, number, [x, y, z], local / 4.0))
+    /// The corners of a cell in the lattice of all cells.
+    #[inline(always)]
+    fn lattice(&self, parts: Parts<'_>, cell: [u32; 3]) -> [[T; 2]; 4] {
+        let [nx, ny, nz] = parts.cell_dims;
+        let dims = [nx + 1, ny + 1, nz + 1];
+        let first = linear(dims, cell);
+        let [a, b, c, d] = row_offsets(dims);
+        let row = |offset| self.pair(first + offset);
+        [row(a), row(b), row(c), row(d)]
+    }
+}
+
+/// What lies around a point of a sparse store, in rows of two values: x fastest, then y, then z.
+enum Around<T> {
+    /// The values of the eight voxels.
+    Rows([[T; 2]; 4]),
+    /// Values further apart; which voxel from the first of them on; and a voxel's part of their
+    /// distance.
+    Coarse([[T; 2]; 4], [usize; 3], f32),
+    /// The values of the eight voxels, of which some are interpolated.
+    Mixed([f32; 8]),
+}
+
+/// A number in a [`Store`].
+trait Value: Pod + Into<f32> {
+    /// The first ones of all pairs, and the second ones.
+    fn unzip(pairs: [[Self; 2]; LANES]) -> [f32x4; 2];
+}
+
+impl Value for i16 {
+    #[inline(always)]
+    fn unzip(pairs: [[Self; 2]; LANES]) -> [f32x4; 2] {
+        // Both at once, the first one in the lower half.
+        let both = |[a, b]: [i16; 2]| i32::from(b) << 16 | i32::from(a) & 0xffff;
+        let [a, b, c, d] = pairs;
+        let both = i32x4::new([both(a), both(b), both(c), both(d)]);
+        let low: i32x4 = (both << 16) >> 16;
+        let high: i32x4 = both >> 16;
+        [low.round_float(), high.round_float()]
+    }
+}
+
+impl Value for f32 {
+    #[inline(always)]
+    fn unzip([a, b, c, d]: [[Self; 2]; LANES]) -> [f32x4; 2] {
+        [
+            f32x4::new([a[0], b[0], c[0], d[0]]),
+            f32x4::new([a[1], b[1], c[1], d[1]]),
+        ]
+    }
+}
+
+/// Eight values in each lane, x fastest, then y, then z.
+struct Eight([f32x4; 8]);
+
+impl Eight {
+    #[inline(always)]
+    fn of<T: Value>(rows: &[[[T; 2]; LANES]; 4]) -> Self {
+        let [[a, b], [c, d], [e, f], [g, h]] = [
+            T::unzip(rows[0]),
+            T::unzip(rows[1]),
+            T::unzip(rows[2]),
+            T::unzip(rows[3]),
+        ];
+        Self([a, b, c, d, e, f, g, h])
     }
 
-    /// The lattice of all cells, interpolated at `t` in one of them.
-    fn coarse(&self, parts: Parts<'_>, cell: [u32; 3], t: Vec3) -> f32 {
-        let [nx, ny, _] = parts.cell_dims.map(|n| n as usize + 1);
-        let first = linear(parts.cell_dims.map(|n| n + 1), cell);
-        let at = |i: usize| {
-            let (dx, dy, dz) = (i & 1, i >> 1 & 1, i >> 2);
-            self.get(first + (dz * ny + dy) * nx + dx)
+    #[inline(always)]
+    fn set(&mut self, lane: usize, values: [f32; 8]) {
+        for (own, value) in self.0.iter_mut().zip(values) {
+            own.as_mut_array()[lane] = value;
+        }
+    }
+
+    /// Trilinear interpolation, and how much it grows per step along each axis.
+    #[inline(always)]
+    fn interpolated(&self, t: Vectors) -> (f32x4, Vectors) {
+        let lerp = |a: f32x4, b: f32x4, t: f32x4| a + (b - a) * t;
+        let [a, b, c, d, e, f, g, h] = self.0;
+        // Slopes along x in the four rows, and the rows at t.
+        let steps = [b - a, d - c, f - e, h - g];
+        let rows = [
+            a + steps[0] * t.x,
+            c + steps[1] * t.x,
+            e + steps[2] * t.x,
+            g + steps[3] * t.x,
+        ];
+        let (low, high) = (lerp(rows[0], rows[1], t.y), lerp(rows[2], rows[3], t.y));
+        let slope = Vectors {
+            x: lerp(
+                lerp(steps[0], steps[1], t.y),
+                lerp(steps[2], steps[3], t.y),
+                t.z,
+            ),
+            y: lerp(rows[1] - rows[0], rows[3] - rows[2], t.z),
+            z: high - low,
         };
-        lerp_eight(core::array::from_fn(at), t)
+        (lerp(low, high, t.z), slope)
     }
 }
 
 impl Sparse<'_> {
+    #[inline]
     fn parts(&self) -> Parts<'_> {
         Parts {
             groups: &self.groups,
@@ -472,8 +690,38 @@ impl Sparse<'_> {
 }
 
 impl Parts<'_> {
+    /// Where the value of a voxel of a refined cell is, if it is stored.
+    #[inline(always)]
+    fn brick(&self, number: usize, [x, y, z]: [usize; 3]) -> Option<usize> {
+        let cell = self.cells[number];
+        let bit = 1_u64 << (((z / 2) * 4 + y / 2) * 4 + x / 2);
+        if cell.bricks & bit == 0 {
+            return None;
+        }
+        let before = (cell.bricks & (bit - 1)).count_ones();
+        let within = ((z % 2) * 2 + y % 2) * 2 + x % 2;
+        Some(self.bricks + (cell.first + before) as usize * BRICK_VALUES + within)
+    }
+
+    /// Whether no cell next to this one behind the crossed faces, edges or corner is refined.
+    #[inline(always)]
+    fn none_refined(&self, cell: [u32; 3], crosses: [bool; 3]) -> bool {
+        let up_to = |a: usize| cell[a] + u32::from(crosses[a]);
+        for z in cell[2]..=up_to(2) {
+            for y in cell[1]..=up_to(1) {
+                for x in cell[0]..=up_to(0) {
+                    let index = linear(self.cell_dims, [x, y, z]);
+                    if self.groups[index / 64].refined >> (index % 64) & 1 == 1 {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
+    }
+
     /// The number of a cell among the refined ones, if it is one of them.
-    #[inline]
+    #[inline(always)]
     fn refined(&self, cell: [u32; 3]) -> Option<usize> {
         let index = linear(self.cell_dims, cell);
         let group = self.groups[index / 64];
@@ -489,17 +737,23 @@ impl Parts<'_> {
 /// Position in an array with x fastest, then y, then z.
 #[inline]
 fn linear(dims: [u32; 3], at: [u32; 3]) -> usize {
-    let [nx, ny, _] = dims.map(|n| n as usize);
-    let [x, y, z] = at.map(|c| c as usize);
-    (z * ny + y) * nx + x
+    let [nx, ny] = [dims[0] as usize, dims[1] as usize];
+    (at[2] as usize * ny + at[1] as usize) * nx + at[0] as usize
 }
 
-/// Trilinear interpolation between eight corners, x fastest.
-fn lerp_eight(corners: [f32; 8], t: Vec3) -> f32 {
+/// How far the four rows around a place lie from the first.
+#[inline(always)]
+fn row_offsets(dims: [u32; 3]) -> [usize; 4] {
+    let [nx, ny] = [dims[0] as usize, dims[1] as usize];
+    [0, nx, nx * ny, nx * ny + nx]
+}
+
+/// Trilinear interpolation of a single point.
+#[inline(always)]
+fn lerp_one<T: Value>(rows: [[T; 2]; 4], t: Vec3) -> f32 {
     let lerp = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let row = |i: usize| lerp(corners[i], corners[i + 1], t.x);
-    let plane = |i: usize| lerp(row(i), row(i + 2), t.y);
-    lerp(plane(0), plane(4), t.z)
+    let row = |i: usize| lerp(rows[i][0].into(), rows[i][1].into(), t.x);
+    lerp(lerp(row(0), row(1), t.y), lerp(row(2), row(3), t.y), t.z)
 }
 
 #[cfg(test)]
@@ -576,7 +830,11 @@ mod tests {
             for y in 0..DIMS[1] - 1 {
                 for x in 0..DIMS[0] - 1 {
                     for t in [Vec3::ZERO, Vec3::ONE, Vec3::new(0.2, 0.9, 0.4)] {
-                        let [a, b] = [&sparse, &dense].map(|s| s.interpolated([x, y, z], t));
+                        let [a, b] = [&sparse, &dense].map(|s| {
+                            let corners = [[x, y, z]; LANES];
+                            let (value, _) = s.interpolated(corners, Vectors::splat(t), LANES);
+                            value.to_array()[0]
+                        });
                         assert!((a - b).abs() < 1e-4, "{x} {y} {z} {t}: {a} {b}");
                     }
                 }

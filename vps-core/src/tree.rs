@@ -1,5 +1,6 @@
 use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
+use wide::f32x4;
 
 use crate::{Aabb, Storage};
 
@@ -14,6 +15,10 @@ pub struct Cluster {
     pub center: [f32; 3],
     /// Radius R of that ball in metres.
     pub radius: f32,
+    /// Unit normal of a plane through the centre the points lie close to.
+    pub normal: [f32; 3],
+    /// How far from that plane they lie at most, in metres.
+    pub thickness: f32,
     /// The first child: a cluster of the next level, counted from that level's start, or on the
     /// leaf level a point.
     pub first: u32,
@@ -21,6 +26,17 @@ pub struct Cluster {
     pub count: u32,
     /// The point that stands for the whole cluster, P_1.
     pub parent_point: u32,
+    /// The area of the surface its points stand for, in m².
+    pub area: f32,
+}
+
+impl Cluster {
+    /// Centre and radius, normal and thickness.
+    #[inline(always)]
+    pub(crate) fn disc(&self) -> (f32x4, f32x4) {
+        let [disc, flat, _]: [[f32; 4]; 3] = bytemuck::cast(*self);
+        (f32x4::new(disc), f32x4::new(flat))
+    }
 }
 
 /// A pointshell ordered in a tree of clusters, each with a ball around its points
@@ -32,9 +48,11 @@ pub struct Cluster {
 pub struct PointSphereTree<'a> {
     points: Storage<'a, [f32; 3]>,
     normals: Storage<'a, [f32; 3]>,
+    areas: Storage<'a, f32>,
     clusters: Storage<'a, Cluster>,
     level_starts: Storage<'a, u32>,
     bounds: Aabb,
+    reach: f32,
 }
 
 /// Why a [`PointSphereTree`] was refused.
@@ -43,13 +61,15 @@ pub enum TreeError {
     /// A shell needs a point.
     #[error("the pointshell has no point")]
     NoPoints,
-    /// Each point has one normal.
-    #[error("{points} points but {normals} normals")]
-    NormalCount {
+    /// Each point has one normal and one area.
+    #[error("{points} points but {normals} normals and {areas} areas")]
+    Counts {
         /// Points given.
         points: usize,
         /// Normals given.
         normals: usize,
+        /// Areas given.
+        areas: usize,
     },
     /// A coordinate is NaN or infinite.
     #[error("point {0} is not finite")]
@@ -57,6 +77,15 @@ pub enum TreeError {
     /// A normal is not of length one.
     #[error("the normal of point {0} is not of length one")]
     Normal(usize),
+    /// An area is negative or no number.
+    #[error("the area of point {0} is not a finite number from 0 on")]
+    Area(usize),
+    /// The area of a cluster is that of its points.
+    #[error("the area of cluster {0} is not that of its points")]
+    ClusterArea(usize),
+    /// The plane of a cluster is none.
+    #[error("the normal of cluster {0} is not of length one")]
+    ClusterNormal(usize),
     /// Levels begin at 0, grow, and end with the last cluster; the top one holds one cluster.
     #[error("the levels do not divide the clusters, or are more than 32")]
     Levels,
@@ -67,9 +96,9 @@ pub enum TreeError {
     /// The parent point lies in another cluster.
     #[error("the parent point of cluster {0} is not below it")]
     ParentPoint(usize),
-    /// A ball leaves a point out.
-    #[error("the ball of cluster {cluster} does not hold point {point}")]
-    Ball {
+    /// A ball, or the flat part of it, leaves a point out.
+    #[error("the disc of cluster {cluster} does not hold point {point}")]
+    Disc {
         /// The cluster.
         cluster: usize,
         /// A point below it.
@@ -78,8 +107,8 @@ pub enum TreeError {
 }
 
 impl<'a> PointSphereTree<'a> {
-    /// A tree over `points` (metres, shell frame) with unit inward `normals`, both in the order of
-    /// the leaves. `clusters` holds one level after the other from the top; level L is
+    /// A tree over `points` (metres, shell frame) with unit inward `normals` and the `areas` of the
+    /// surface they stand for (m²), all in the order of the leaves. `clusters` holds one level after the other from the top; level L is
     /// `level_starts[L - 1]..level_starts[L]`, so there is one start more than levels.
     ///
     /// Costs one pass over all points a level: all that a query relies on is checked here.
@@ -89,30 +118,38 @@ impl<'a> PointSphereTree<'a> {
     pub fn new(
         points: Storage<'a, [f32; 3]>,
         normals: Storage<'a, [f32; 3]>,
+        areas: Storage<'a, f32>,
         clusters: Storage<'a, Cluster>,
         level_starts: Storage<'a, u32>,
     ) -> Result<Self, TreeError> {
-        if normals.len() != points.len() {
-            return Err(TreeError::NormalCount {
+        if normals.len() != points.len() || areas.len() != points.len() {
+            return Err(TreeError::Counts {
                 points: points.len(),
                 normals: normals.len(),
+                areas: areas.len(),
             });
         }
         let position = |p: &[f32; 3]| Vec3::from_array(*p);
         if let Some(i) = points.iter().position(|p| !position(p).is_finite()) {
             return Err(TreeError::Point(i));
         }
-        let unit = |n: &[f32; 3]| (position(n).length() - 1.0).abs() < 1e-3;
-        if let Some(i) = normals.iter().position(|n| !unit(n)) {
+        if let Some(i) = normals.iter().position(|n| !is_unit(position(n))) {
             return Err(TreeError::Normal(i));
         }
+        let is_area = |a: &f32| a.is_finite() && *a >= 0.0;
+        if let Some(i) = areas.iter().position(|a| !is_area(a)) {
+            return Err(TreeError::Area(i));
+        }
         let bounds = Aabb::of_points(points.iter().map(position)).ok_or(TreeError::NoPoints)?;
+        let reach = bounds.min.abs().max(bounds.max.abs()).length();
         let tree = Self {
             points,
             normals,
+            areas,
             clusters,
             level_starts,
             bounds,
+            reach,
         };
         tree.check_levels()?;
         tree.check_clusters()?;
@@ -161,13 +198,24 @@ impl<'a> PointSphereTree<'a> {
                     return Err(TreeError::ParentPoint(start + i));
                 }
                 let center = Vec3::from_array(cluster.center);
+                let normal = Vec3::from_array(cluster.normal);
+                if !is_unit(normal) {
+                    return Err(TreeError::ClusterNormal(start + i));
+                }
                 let outside = |&p: &usize| {
                     // Written so that a NaN counts as outside.
-                    let inside = center.distance(self.point(p)) <= cluster.radius;
+                    let inside = center.distance(self.point(p)) <= cluster.radius
+                        && (self.point(p) - center).dot(normal).abs() <= cluster.thickness;
                     !inside
                 };
+                let area: f64 = below.clone().map(|p| f64::from(self.areas[p])).sum();
+                // Written so that a NaN does not count as the same.
+                let is_same = (f64::from(cluster.area) - area).abs() <= 1e-4 * area;
+                if !is_same {
+                    return Err(TreeError::ClusterArea(start + i));
+                }
                 if let Some(point) = below.into_iter().find(outside) {
-                    return Err(TreeError::Ball {
+                    return Err(TreeError::Disc {
                         cluster: start + i,
                         point,
                     });
@@ -192,21 +240,24 @@ impl<'a> PointSphereTree<'a> {
         first as usize..last as usize + 1
     }
 
-    /// What points, normals, clusters and levels take in memory, and in a file but for its
+    /// What points, normals, areas, clusters and levels take in memory, and in a file but for its
     /// alignment.
     pub fn byte_len(&self) -> usize {
         size_of_val(&*self.points)
             + size_of_val(&*self.normals)
+            + size_of_val(&*self.areas)
             + size_of_val(&*self.clusters)
             + size_of_val(&*self.level_starts)
     }
 
     /// Number of points N_P.
+    #[inline]
     pub fn point_count(&self) -> usize {
         self.points.len()
     }
 
     /// Number of levels N_L.
+    #[inline]
     pub fn level_count(&self) -> u32 {
         self.level_starts.len() as u32 - 1
     }
@@ -215,32 +266,51 @@ impl<'a> PointSphereTree<'a> {
     ///
     /// # Panics
     /// If there is no such level.
+    #[inline]
     pub fn level(&self, level: u32) -> &[Cluster] {
-        let [start, end] = [level - 1, level].map(|l| self.level_starts[l as usize] as usize);
+        let start = self.level_starts[level as usize - 1] as usize;
+        let end = self.level_starts[level as usize] as usize;
         &self.clusters[start..end]
     }
 
     /// Position P of a point in metres in the shell frame.
+    #[inline]
     pub fn point(&self, index: usize) -> Vec3 {
         Vec3::from_array(self.points[index])
     }
 
     /// Unit inward normal n of a point in the shell frame.
+    #[inline]
     pub fn normal(&self, index: usize) -> Vec3 {
         Vec3::from_array(self.normals[index])
     }
 
+    /// The area of the surface a point stands for, in m².
+    #[inline]
+    pub fn area(&self, index: usize) -> f32 {
+        self.areas[index]
+    }
+
     /// All points, in the order of the leaves.
+    #[inline]
     pub fn points(&self) -> &[[f32; 3]] {
         &self.points
     }
 
     /// All normals, in the order of the points.
+    #[inline]
     pub fn normals(&self) -> &[[f32; 3]] {
         &self.normals
     }
 
+    /// All areas, in the order of the points.
+    #[inline]
+    pub fn areas(&self) -> &[f32] {
+        &self.areas
+    }
+
     /// All clusters, level by level from the top.
+    #[inline]
     pub fn clusters(&self) -> &[Cluster] {
         &self.clusters
     }
@@ -248,6 +318,12 @@ impl<'a> PointSphereTree<'a> {
     /// Where each level starts among the clusters, with the end of the last level behind.
     pub fn level_starts(&self) -> &[u32] {
         &self.level_starts
+    }
+
+    /// No point is further from the origin of the shell frame, in metres.
+    #[inline]
+    pub(crate) fn reach(&self) -> f32 {
+        self.reach
     }
 
     /// A box around all points, in the shell frame.
@@ -261,9 +337,15 @@ impl<'a> PointSphereTree<'a> {
         PointSphereTree {
             points: self.points.into_owned(),
             normals: self.normals.into_owned(),
+            areas: self.areas.into_owned(),
             clusters: self.clusters.into_owned(),
             level_starts: self.level_starts.into_owned(),
             bounds: self.bounds,
+            reach: self.reach,
         }
     }
+}
+
+fn is_unit(normal: Vec3) -> bool {
+    (normal.length() - 1.0).abs() < 1e-3
 }

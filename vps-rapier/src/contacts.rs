@@ -6,7 +6,7 @@ use rapier3d::parry::query::{
     TypedWorkspaceData, WorkspaceData,
 };
 use rapier3d::parry::shape::PackedFeatureId;
-use vps_core::{Contact, ContactManifold, Vec3};
+use vps_core::{Contact, Vec3};
 
 use crate::pair::Pair;
 
@@ -17,12 +17,9 @@ const SAME_NORMAL: f32 = 0.996_2;
 /// 3.2).
 const MANIFOLD_SIZE: usize = 4;
 
-/// The contacts of a pair, kept from step to step for their memory. Its presence also tells
-/// rapier that the manifolds of the pair may change their order.
-#[derive(Clone, Default)]
-struct Workspace {
-    contacts: Vec<Contact>,
-}
+/// Tells rapier by its presence that the manifolds of the pair may change their order.
+#[derive(Clone)]
+struct Workspace;
 
 impl WorkspaceData for Workspace {
     fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
@@ -30,7 +27,7 @@ impl WorkspaceData for Workspace {
     }
 
     fn clone_dyn(&self) -> Box<dyn WorkspaceData> {
-        Box::new(self.clone())
+        Box::new(Self)
     }
 }
 
@@ -76,24 +73,11 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
 ) {
     let is_ours = |w: &ContactManifoldsWorkspace| w.0.downcast_ref::<Workspace>().is_some();
     if !workspace.as_ref().is_some_and(is_ours) {
-        *workspace = Some(Workspace::default().into());
+        *workspace = Some(Workspace.into());
     }
-    let Some(scratch) = workspace
-        .as_mut()
-        .and_then(|w| w.0.downcast_mut::<Workspace>())
-    else {
-        unreachable!("the workspace was just made");
-    };
-    scratch.contacts.clear();
-    pair.for_each_contact(pos12, prediction, |contact| scratch.contacts.push(contact));
     let mut old = std::mem::take(manifolds);
     let shell_to_field = pair.shell_to_field(pos12);
-    let by_depth = |a: &&Contact, b: &&Contact| a.penetration.total_cmp(&b.penetration);
-    let Some(deepest) = scratch.contacts.iter().max_by(by_depth) else {
-        return;
-    };
-    let along = SurfaceContact::new(pair, &shell_to_field, deepest).shell_normal;
-    let picked = ContactManifold::<MANIFOLD_SIZE>::spread(&scratch.contacts, along, prediction);
+    let picked = pair.manifold::<MANIFOLD_SIZE>(pos12, prediction);
     for contact in picked.contacts() {
         let surface = SurfaceContact::new(pair, &shell_to_field, contact);
         let (n1, n2) = pair.in_order(surface.shell_normal, surface.field_normal);

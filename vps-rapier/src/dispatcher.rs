@@ -29,7 +29,7 @@ impl VpsDispatcher {
     }
 }
 
-/// The closest points of the two shapes, or the deepest ones. Tests every point of the shell.
+/// The closest points of the two shapes, or the deepest ones.
 fn closest(pair: &Pair<'_>, pos12: &Pose, within: Real) -> Option<ParryContact> {
     let contact = pair.deepest(pos12, within)?;
     let surface = SurfaceContact::new(pair, &pair.shell_to_field(pos12), &contact);

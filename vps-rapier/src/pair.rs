@@ -1,8 +1,8 @@
 use rapier3d::math::Pose;
 use rapier3d::parry::shape::{Shape, TypedShape};
 use vps_core::{
-    Ball, Contact, Cuboid, DistanceField, HalfSpace, LocalPenetration, PointSphereTree, Query,
-    Trilinear, Vec3,
+    Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
+    PointSphereTree, Query, Trilinear, Vec3,
 };
 
 use crate::{ShapeField, VpsShape};
@@ -79,13 +79,11 @@ impl<'s> Pair<'s> {
         with_field!(self, field => field.inward_direction(point))
     }
 
-    /// Contacts up to `margin` metres away, `pos12` being the pose of the second shape in the frame
-    /// of the first.
-    pub(crate) fn for_each_contact(&self, pos12: &Pose, margin: f32, visit: impl FnMut(Contact)) {
+    /// A few of the contacts up to `margin` metres away, `pos12` being the pose of the second shape
+    /// in the frame of the first.
+    pub(crate) fn manifold<const N: usize>(&self, pos12: &Pose, margin: f32) -> ContactManifold<N> {
         let pose = self.shell_to_field(pos12);
-        with_field!(self, field => Query::new(self.tree, field, pose)
-            .with_margin(margin)
-            .for_each_contact(visit));
+        with_field!(self, field => Query::new(self.tree, field, pose).with_margin(margin).manifold())
     }
 
     /// The deepest contact up to `margin` metres away.

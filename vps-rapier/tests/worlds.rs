@@ -7,7 +7,7 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, Query
 use rapier3d::parry::utils::Array2;
 use rapier3d::prelude::*;
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
-use vps_core::conformance::check_ball;
+use vps_core::conformance::check;
 use vps_core::{Asset, DistanceField};
 use vps_rapier::{Role, Sampling, ShapeField, VpsDispatcher, VpsShape, narrow_phase};
 
@@ -317,7 +317,7 @@ fn fields_of_parry_shapes_conform() {
             let inside = towards.normalize_or_zero() * towards.length().min(1.0);
             let radius = 0.4 * next();
             inside_found += u32::from(field.signed_distance(center + inside * radius) < 0.0);
-            if let Err(violation) = check_ball(&field, center, radius, inside, Vector::Y) {
+            if let Err(violation) = check(&field, center, radius, inside, Vector::Y) {
                 panic!("shape {i}: {violation}");
             }
         }

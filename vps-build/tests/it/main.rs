@@ -2,5 +2,6 @@
 
 mod files;
 mod invariants;
+mod queries;
 mod solids;
 mod support;

@@ -56,6 +56,10 @@ pub(crate) fn encoding() -> impl Strategy<Value = Encoding> {
     ]
 }
 
+pub(crate) fn density() -> impl Strategy<Value = Density> {
+    prop_oneof![Just(Density::Sparse), Just(Density::Dense)]
+}
+
 pub(crate) fn vector(size: f32) -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-size..size).prop_map(Vec3::from_array)
 }

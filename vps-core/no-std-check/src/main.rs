@@ -1,11 +1,11 @@
-//! A whole query from constant data. Exits with 0 if its result is right.
+//! Whole queries on an asset in constant memory. Exits with 0 if their results are right, otherwise
+//! with the number of what is wrong.
 
 #![no_std]
 #![no_main]
 
 use vps_core::{
-    Aabb, Accuracy, Cluster, ContactManifold, DistanceField, Grid, PointSphereTree, Pose3, Query,
-    Store, Values, Vec3, Voxelmap,
+    Asset, Body, BodyPair, Cuboid, DistanceField, Pose3, Query, Shells, Sweep, Vec3, Weight, Work,
 };
 
 // Only for its start-up code, which calls `main`.
@@ -17,75 +17,61 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// Four corners of a square, facing up into the body above.
-static POINTS: [[f32; 3]; 4] = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
-static NORMALS: [[f32; 3]; 4] = [[0.0, 1.0, 0.0]; 4];
-static CLUSTERS: [Cluster; 1] = [Cluster {
-    center: [0.0; 3],
-    radius: 1.5,
-    first: 0,
-    count: 4,
-    parent_point: 0,
-}];
-static LEVELS: [u32; 2] = [0, 1];
+/// Bytes at an address an asset can be read from.
+#[repr(align(64))]
+struct Aligned<B: ?Sized>(B);
 
-/// Layers of a floor: two voxels deep, 4 x 4 x 4 voxels of one metre.
-static FLOOR: [i16; 64] = floor();
+/// A torus around the z axis, about a metre wide: written by an example of the builder.
+static TORUS: &Aligned<[u8]> = &Aligned(*include_bytes!("../../../target/torus.vps"));
 
-const fn floor() -> [i16; 64] {
-    let mut values = [0; 64];
-    let mut i = 0;
-    while i < 64 {
-        let y = i / 4 % 4;
-        values[i] = 1 - y as i16;
-        i += 1;
-    }
-    values
-}
+/// The first thing that is wrong.
+fn check() -> Result<(), i32> {
+    let is = |right: bool, number: i32| if right { Ok(()) } else { Err(number) };
+    let torus = Asset::from_bytes(&TORUS.0).map_err(|_| 1)?;
+    let field = torus.voxelmap.trilinear();
+    let ground = Cuboid::new(Vec3::new(2.0, 2.0, 0.1));
+    let half_height = torus.voxelmap.solid().extents().z * 0.5;
 
-fn query() -> Option<bool> {
-    let tree = PointSphereTree::new(
-        POINTS[..].into(),
-        NORMALS[..].into(),
-        CLUSTERS[..].into(),
-        LEVELS[..].into(),
-    )
-    .ok()?;
-    let grid = Grid::new(Vec3::splat(-2.0), 1.0, [4, 4, 4]).ok()?;
-    let solid = Aabb {
-        min: Vec3::splat(-2.0),
-        max: Vec3::new(2.0, -0.5, 2.0),
-    };
-    let accuracy = Accuracy {
-        near_m: 0.01,
-        far_m: 0.01,
-        band_m: 4.0,
-    };
-    let values = Values::Integers(FLOOR[..].into());
-    let store = Store::dense(grid.dims(), values).ok()?;
-    let map = Voxelmap::new(grid, 1.0, solid, accuracy, store).ok()?;
-    let field = map.trilinear();
-    let pose = Pose3::from_translation(Vec3::new(0.0, -1.0, 0.0));
-    let query = Query::new(&tree, &field, pose);
-    let mut contacts = [query.deepest()?; 4];
-    let mut count = 0;
-    query.for_each_contact(|contact| {
-        contacts[count] = contact;
-        count += 1;
-    });
-    let manifold = ContactManifold::<4>::spread(&contacts, Vec3::Y, 0.0);
-    let wrench = query.wrench(Vec3::ZERO);
-    // Four points, each half a metre deep.
-    let right = count == 4
-        && manifold.contacts().len() == 4
-        && (wrench.force - Vec3::new(0.0, 2.0, 0.0)).length() < 1e-5
-        && wrench.torque.length() < 1e-5
-        && field.signed_distance(Vec3::new(0.0, 1.0, 0.0)) > 0.0;
-    Some(right)
+    // Lying on the ground, a centimetre deep.
+    let height = 0.1 + half_height - 0.01;
+    let lying = Pose3::from_translation(Vec3::new(0.0, 0.0, height));
+    let query = Query::new(&torus.tree, &ground, lying);
+    let deepest = query.deepest().ok_or(2)?;
+    is((deepest.penetration - 0.01).abs() < 0.002, 3)?;
+    let wrench = query.wrench(torus.mass.center(), Weight::Area);
+    is(wrench.force.z > 0.0 && wrench.force.truncate().length() < 0.2 * wrench.force.z, 4)?;
+    let manifold = query.with_margin(0.01).manifold::<4>();
+    is(manifold.contacts().len() == 4 && manifold.contacts()[0] == deepest, 5)?;
+    let work = Work::default();
+    let mut segments = 0;
+    query.counting(&work).for_each_segment(3, |_, _| segments += 1);
+    is(segments > 1 && work.points() > 0, 6)?;
+
+    // As much as 40 points tell, and all.
+    let some = query.time_critical(Vec3::ZERO, |tested| tested < 40);
+    let all = query.time_critical(Vec3::ZERO, |_| true);
+    is(!some.is_complete && some.penetration_bound >= deepest.penetration, 7)?;
+    is(all.is_complete && all.deepest == Some(deepest), 8)?;
+
+    // Above the ground, and falling on it.
+    let above = Pose3::from_translation(Vec3::new(0.0, 0.0, height + 0.51));
+    let closest = Query::new(&torus.tree, &ground, above).closest().ok_or(9)?;
+    is((closest.penetration + 0.5).abs() < 0.002, 10)?;
+    let below = Pose3::from_translation(Vec3::new(0.0, 0.0, -3.0));
+    let fall = Sweep::new(&torus.tree, &ground, above, below);
+    let impact = fall.first_contact(1e-3).ok_or(11)?;
+    is((impact.shell_to_field.translation.z - height - 0.01).abs() < 0.005, 12)?;
+
+    // One torus in another.
+    let turned = Pose3::from_translation(Vec3::new(0.4, 0.0, 0.05));
+    let pair = BodyPair::new(Body::of_asset(&torus), Body::of_asset(&torus), turned);
+    is(pair.with_shells(Shells::Both).touches(), 13)?;
+    is(pair.wrench_on_first(Vec3::ZERO, Weight::Point).force.length() > 0.0, 14)?;
+    is(field.signed_distance(Vec3::ZERO) > 0.0, 15)
 }
 
 /// What the C start-up code calls.
 #[unsafe(no_mangle)]
 pub extern "C" fn main(_argc: i32, _argv: *const *const u8) -> i32 {
-    i32::from(query() != Some(true))
+    check().err().unwrap_or(0)
 }

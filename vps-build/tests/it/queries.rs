@@ -1,0 +1,362 @@
+//! Every query against a test of all points.
+
+use proptest::prelude::*;
+use vps_build::{Encoding, Mesh};
+use vps_core::{
+    Asset, Ball, Body, BodyPair, Capsule, Contact, ContactManifold, Cuboid, Cylinder,
+    DistanceField, FieldFn, HalfSpace, Mat3, Pose3, Query, Shells, Sweep, Vec3, Voxelmap, Weight,
+    Work, Wrench,
+};
+
+use crate::support::{asset, asset_of, bumpy_mesh, density, encoding, pose, vector};
+
+/// Cases of a test: few in the usual run, more in the long one.
+fn cases(usual: u32) -> ProptestConfig {
+    let times = std::env::var("VPS_TEST_TIMES").map_or(1, |t| t.parse().unwrap());
+    ProptestConfig::with_cases(usual * times)
+}
+
+fn contacts<F: DistanceField + ?Sized>(query: &Query<'_, F>) -> Vec<Contact> {
+    let mut contacts = Vec::new();
+    query.for_each_contact(|c| contacts.push(c));
+    contacts
+}
+
+fn flat_contacts<F: DistanceField + ?Sized>(query: &Query<'_, F>) -> Vec<Contact> {
+    let mut contacts = Vec::new();
+    query.for_each_contact_flat(|c| contacts.push(c));
+    contacts
+}
+
+/// The deepest, the first of equally deep ones.
+fn deepest<'c>(contacts: impl IntoIterator<Item = &'c Contact>) -> Option<Contact> {
+    let deeper = |best: Option<Contact>, c: &Contact| match best {
+        Some(b) if b.penetration >= c.penetration => Some(b),
+        _ => Some(*c),
+    };
+    contacts.into_iter().fold(None, deeper)
+}
+
+/// Eqs. 2 and 3 in twice the digits, and the size of what is summed.
+fn wrench_of(
+    shell: &Asset<'_>,
+    contacts: &[Contact],
+    center: Vec3,
+    weight: Weight,
+) -> (Wrench, f32) {
+    let (mut force, mut torque, mut size) = (glamx::DVec3::ZERO, glamx::DVec3::ZERO, 0.0);
+    for c in contacts.iter().filter(|c| c.penetration > 0.0) {
+        let weight = match weight {
+            Weight::Point => 1.0,
+            Weight::Area => f64::from(shell.tree.area(c.point as usize)),
+        };
+        let f = c.normal.as_dvec3() * f64::from(c.penetration) * weight;
+        force += f;
+        torque += (c.position - center).as_dvec3().cross(f);
+        size += f.length();
+    }
+    let wrench = Wrench {
+        force: force.as_vec3(),
+        torque: torque.as_vec3(),
+    };
+    (wrench, size as f32)
+}
+
+/// All queries with one field agree with the test of all points.
+fn check_query<F: DistanceField + ?Sized>(
+    shell: &Asset<'_>,
+    field: &F,
+    pose: Pose3,
+    margin: f32,
+) -> Result<(), TestCaseError> {
+    let tree = &shell.tree;
+    let query = Query::new(tree, field, pose).with_margin(margin);
+    let flat = flat_contacts(&query);
+    // The test of all points is that of each by itself.
+    let tolerance = 1e-5;
+    let mut expected = flat.iter().peekable();
+    for i in 0..tree.point_count() {
+        let at = pose.transform_point(tree.point(i));
+        let alone = field.penetration(at, pose.rotation * tree.normal(i));
+        if let Some(c) = expected.next_if(|c| c.point as usize == i) {
+            // Where the field jumps from voxel to voxel, rounding of the place may decide.
+            let off = (alone - c.penetration).abs();
+            prop_assert!(
+                off <= tolerance + field.error_bound(),
+                "{i}: {alone}, {c:?}"
+            );
+        } else {
+            prop_assert!(alone <= -margin + tolerance + field.error_bound());
+        }
+    }
+    prop_assert_eq!(&contacts(&query), &flat);
+    prop_assert_eq!(query.touches(), !flat.is_empty());
+    prop_assert_eq!(query.deepest(), deepest(&flat));
+    let all = flat_contacts(&query.with_margin(f32::INFINITY));
+    prop_assert_eq!(query.closest(), deepest(&all));
+
+    for level in 1..=tree.level_count() {
+        let mut found = Vec::new();
+        query.for_each_segment(level, |segment, contact| found.push((segment, contact)));
+        let mut expected = Vec::new();
+        for (segment, cluster) in tree.level(level).iter().enumerate() {
+            let below = tree.points_below(level, cluster);
+            let own = flat.iter().filter(|c| below.contains(&(c.point as usize)));
+            expected.extend(deepest(own).map(|c| (segment as u32, c)));
+        }
+        prop_assert_eq!(found, expected);
+    }
+
+    let center = shell.mass.center();
+    for weight in [Weight::Point, Weight::Area] {
+        let (expected, size) = wrench_of(shell, &flat, center, weight);
+        let wrench = query.wrench(center, weight);
+        let tolerance = 1e-5 * size;
+        prop_assert!((wrench.force - expected.force).length() <= tolerance);
+        prop_assert!((wrench.torque - expected.torque).length() <= tolerance);
+    }
+
+    let manifold = query.manifold::<5>();
+    if let Some(deepest) = query.deepest() {
+        // As the query turns it, to the bit.
+        let rotation = Mat3::from_quat(pose.rotation);
+        let at = rotation * deepest.position + pose.translation;
+        let inward = rotation.transpose() * field.inward_direction(at);
+        let along = if inward == Vec3::ZERO {
+            deepest.normal
+        } else {
+            inward
+        };
+        let listed = ContactManifold::<5>::spread(&flat, along, margin);
+        prop_assert_eq!(manifold, listed);
+    } else {
+        prop_assert!(manifold.contacts().is_empty());
+    }
+    check_time_critical(&query, center, &flat)?;
+
+    let work = Work::default();
+    prop_assert_eq!(query.counting(&work).deepest(), query.deepest());
+    prop_assert!(work.spheres() > 0 && work.points() <= tree.point_count() as u64);
+    Ok(())
+}
+
+/// More time never gives less, and enough time gives all.
+fn check_time_critical<F: DistanceField + ?Sized>(
+    query: &Query<'_, F>,
+    center: Vec3,
+    flat: &[Contact],
+) -> Result<(), TestCaseError> {
+    let deepest = deepest(flat);
+    let (mut depth, mut bound, mut level) = (f32::NEG_INFINITY, f32::INFINITY, 0);
+    for budget in [0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, u64::MAX] {
+        let estimate = query.time_critical(center, |tested| tested < budget);
+        let found = estimate
+            .deepest
+            .map_or(f32::NEG_INFINITY, |d| d.penetration);
+        prop_assert!(
+            found >= depth && estimate.penetration_bound <= bound && estimate.level >= level
+        );
+        (depth, bound, level) = (found, estimate.penetration_bound, estimate.level);
+        if let Some(deepest) = deepest {
+            prop_assert!(bound >= deepest.penetration);
+        }
+        if budget == u64::MAX {
+            prop_assert!(estimate.is_complete);
+        }
+        if estimate.is_complete {
+            prop_assert_eq!(estimate.deepest, deepest);
+            prop_assert_eq!(estimate.wrench, query.wrench(center, Weight::Area));
+        }
+    }
+    Ok(())
+}
+
+/// All samplings of a map, and fields of other kinds.
+fn check_all_fields(
+    shell: &Asset<'_>,
+    map: &Voxelmap<'_>,
+    pose: Pose3,
+    margin: f32,
+) -> Result<(), TestCaseError> {
+    let bounds = Ball::new(0.4).bounds();
+    let function = FieldFn::new(|p: Vec3| 0.4 - p.length(), 1.0, bounds, 1e-6);
+    // The one compiled as a whole, the others asked through a table.
+    check_query(shell, &map.trilinear(), pose, margin)?;
+    let others: [&dyn DistanceField; 9] = [
+        &map.local(),
+        &map.linear(),
+        &map.trilinear(),
+        &Ball::new(0.4),
+        &Cuboid::new(Vec3::new(0.5, 0.1, 0.4)),
+        &HalfSpace::new(Vec3::new(0.1, 1.0, 0.0)),
+        &Capsule::new(0.3, 0.2),
+        &Cylinder::new(0.2, 0.4),
+        &function,
+    ];
+    for field in others {
+        check_query(shell, field, pose, margin)?;
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(cases(48))]
+
+    #[test]
+    fn all_queries_give_what_brute_force_gives(
+        shell in bumpy_mesh(),
+        field in bumpy_mesh(),
+        points in 1..600_u32,
+        encoding in encoding(),
+        density in density(),
+        poses in prop::collection::vec((pose(0.9), 0.0..0.05_f32), 8),
+    ) {
+        let shell = asset(&shell, points, Encoding::Distances(None));
+        let field = asset_of(&field, 10, encoding, density);
+        for (pose, margin) in poses {
+            check_all_fields(&shell, &field.voxelmap, pose, margin)?;
+        }
+    }
+
+    /// Moving both bodies together leaves everything as it was, but for rounding.
+    #[test]
+    fn a_common_motion_changes_nothing(
+        shell in bumpy_mesh(), field in bumpy_mesh(),
+        a in pose(0.6), b in pose(0.6), motion in pose(5.0),
+    ) {
+        let shell = asset(&shell, 400, Encoding::Distances(None));
+        let field = asset(&field, 10, Encoding::Distances(None));
+        let trilinear = field.voxelmap.trilinear();
+        let before = Query::new(&shell.tree, &trilinear, b.inv_mul(&a));
+        let (moved_a, moved_b) = (motion * a, motion * b);
+        let after = Query::new(&shell.tree, &trilinear, moved_b.inv_mul(&moved_a));
+        let tolerance = 1e-4;
+        let (before_all, after_all) = (contacts(&before), contacts(&after));
+        for (these, those) in [(&before_all, &after_all), (&after_all, &before_all)] {
+            for c in these.iter().filter(|c| c.penetration > tolerance) {
+                let same = those.iter().find(|d| d.point == c.point);
+                prop_assert!(same.is_some_and(|d| (d.penetration - c.penetration).abs() < tolerance));
+            }
+        }
+        let [w, v] = [before, after].map(|q| q.wrench(Vec3::ZERO, Weight::Point));
+        let tolerance = tolerance * (1 + before_all.len()) as f32;
+        prop_assert!((w.force - v.force).length() < tolerance);
+        prop_assert!((w.torque - v.torque).length() < tolerance);
+    }
+
+    /// What the first body feels, the second feels the other way round.
+    #[test]
+    fn swapping_the_bodies_negates_the_force(
+        a in bumpy_mesh(), b in bumpy_mesh(), pose in pose(0.6), margin in 0.0..0.05_f32,
+    ) {
+        let a = asset(&a, 300, Encoding::Distances(None));
+        let b = asset(&b, 200, Encoding::Distances(None));
+        let back = pose.inverse();
+        for shells in [Shells::FewerPoints, Shells::First, Shells::Second, Shells::Both] {
+            let swapped = match shells {
+                Shells::First => Shells::Second,
+                Shells::Second => Shells::First,
+                other => other,
+            };
+            let ab = BodyPair::new(Body::of_asset(&a), Body::of_asset(&b), pose)
+                .with_shells(shells)
+                .with_margin(margin);
+            let ba = BodyPair::new(Body::of_asset(&b), Body::of_asset(&a), back)
+                .with_shells(swapped)
+                .with_margin(margin);
+            let (mut these, mut those) = (0, 0);
+            ab.for_each_contact(|_| these += 1);
+            ba.for_each_contact(|_| those += 1);
+            // Those that are just within the margin may be lost to rounding.
+            let near = i32::abs(these - those);
+            prop_assert!(near <= 3);
+            let on_a = ab.wrench_on_first(Vec3::ZERO, Weight::Area);
+            // About the same point, in the frame of the other body, and back.
+            let on_b = ba.wrench_on_first(back.translation, Weight::Area);
+            let tolerance = 1e-5;
+            prop_assert!((on_a.force + pose.rotation * on_b.force).length() < tolerance);
+            prop_assert!((on_a.torque + pose.rotation * on_b.torque).length() < tolerance);
+            let depth = |c: Option<vps_core::PairContact>| c.map_or(-margin, |c| c.penetration);
+            prop_assert!((depth(ab.deepest()) - depth(ba.deepest())).abs() < 1e-5);
+            prop_assert_eq!(ab.touches(), ab.deepest().is_some());
+        }
+    }
+
+    /// Nothing that is met on the way is missed, and nothing is met too late.
+    #[test]
+    fn sweeps_find_the_first_contact(
+        shell in bumpy_mesh(), field in bumpy_mesh(), start in pose(1.5), way in vector(3.0),
+        turn in pose(0.1),
+    ) {
+        let shell = asset(&shell, 150, Encoding::Distances(None));
+        let field = asset(&field, 10, Encoding::Distances(None));
+        let field = field.voxelmap.trilinear();
+        let end = Pose3::from_parts(start.translation + way, turn.rotation * start.rotation);
+        let sweep = Sweep::new(&shell.tree, &field, start, end);
+        let reached = sweep.pose_at(1.0);
+        prop_assert!(reached.translation.distance(end.translation) < 1e-5);
+        prop_assert!(reached.rotation.dot(end.rotation).abs() > 0.9999);
+        let touches = |time: f32| {
+            Query::new(&shell.tree, &field, sweep.pose_at(time)).touches()
+        };
+        let first = (0..=200).map(|i| i as f32 / 200.0).find(|&t| touches(t));
+        let tolerance = 1e-3;
+        match (sweep.first_contact(tolerance), first) {
+            (None, first) => prop_assert_eq!(first, None),
+            (Some(impact), None) => {
+                // Between two of the times looked at, or grazing.
+                let gap = -impact.closest.penetration;
+                prop_assert!(gap < 0.1, "{gap}");
+            }
+            (Some(impact), Some(first)) => {
+                prop_assert!(impact.time <= first);
+                prop_assert!(!touches(0.0) || impact.time == 0.0);
+                // Up to there it is free.
+                let before = (0..50).map(|i| impact.time * i as f32 / 50.0);
+                prop_assert!(impact.time == 0.0 || before.into_iter().all(|t| !touches(t)));
+                // And close to the solid: √3 is the most by which interpolation is steeper.
+                prop_assert!(impact.closest.penetration > -2.0 * tolerance);
+            }
+        }
+    }
+}
+
+#[test]
+fn broken_poses_give_no_contact() {
+    let asset = asset(
+        &Mesh::icosphere(0.5, 2).unwrap(),
+        100,
+        Encoding::Distances(None),
+    );
+    for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let pose = Pose3::from_translation(Vec3::new(0.0, broken, 0.0));
+        let turned =
+            Pose3::from_parts(Vec3::ZERO, vps_core::Quat::from_xyzw(broken, 0.0, 0.0, 1.0));
+        for pose in [pose, turned] {
+            check_broken(&asset, &asset.voxelmap.trilinear(), pose);
+            check_broken(&asset, &asset.voxelmap.linear(), pose);
+            check_broken(&asset, &asset.voxelmap.local(), pose);
+            check_broken(&asset, &HalfSpace::new(Vec3::Y), pose);
+            check_broken(&asset, &Cuboid::new(Vec3::ONE), pose);
+            let field = asset.voxelmap.trilinear();
+            let sweep = Sweep::new(&asset.tree, &field, Pose3::IDENTITY, pose);
+            assert_eq!(sweep.first_contact(1e-3), None);
+            let sweep = Sweep::new(&asset.tree, &field, pose, Pose3::IDENTITY);
+            assert_eq!(sweep.first_contact(1e-3), None);
+        }
+    }
+}
+
+fn check_broken(asset: &Asset<'_>, field: &dyn DistanceField, pose: Pose3) {
+    for margin in [0.0, 0.1, f32::INFINITY] {
+        let query = Query::new(&asset.tree, field, pose).with_margin(margin);
+        assert_eq!(query.deepest(), None);
+        assert_eq!(query.closest(), None);
+        assert!(!query.touches());
+        assert!(contacts(&query).is_empty() && flat_contacts(&query).is_empty());
+        assert!(query.manifold::<4>().contacts().is_empty());
+        assert_eq!(query.wrench(Vec3::ZERO, Weight::Area), Wrench::default());
+        assert_eq!(query.time_critical(Vec3::ZERO, |_| true).deepest, None);
+        query.for_each_segment(2, |_, _| panic!("a contact"));
+    }
+}

@@ -1,0 +1,247 @@
+//! Several points at a time, as the registers of a processor take them.
+
+use glamx::{Mat3, Vec3};
+use wide::f32x4;
+
+use crate::Aabb;
+
+/// How many points or discs a [`DistanceField`](crate::DistanceField) is asked for at a time.
+pub const LANES: usize = 4;
+
+/// Coordinates of [`LANES`] points in metres, each axis by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Points {
+    /// All x.
+    pub x: [f32; LANES],
+    /// All y.
+    pub y: [f32; LANES],
+    /// All z.
+    pub z: [f32; LANES],
+}
+
+/// Flat pieces of a shell: each holds what is no further than a radius from its centre, and no
+/// further than its thickness from the plane through the centre. Lengths in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Discs {
+    /// Their centres.
+    pub centers: Points,
+    /// Their radii.
+    pub radii: [f32; LANES],
+    /// Unit normals of their planes.
+    pub normals: Points,
+    /// How far from its plane a piece reaches on either side.
+    pub thickness: [f32; LANES],
+}
+
+impl Points {
+    /// The same point in all lanes.
+    #[inline(always)]
+    pub fn splat(point: Vec3) -> Self {
+        Self {
+            x: [point.x; LANES],
+            y: [point.y; LANES],
+            z: [point.z; LANES],
+        }
+    }
+
+    /// The first of `points`; should there be fewer than lanes, the last is repeated.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[inline(always)]
+    pub fn padded(points: &[[f32; 3]]) -> Self {
+        let mut lanes = Self::default();
+        for lane in 0..LANES {
+            let point = points[lane.min(points.len() - 1)];
+            (lanes.x[lane], lanes.y[lane], lanes.z[lane]) = (point[0], point[1], point[2]);
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, point: Vec3) {
+        (self.x[lane], self.y[lane], self.z[lane]) = (point.x, point.y, point.z);
+    }
+
+    /// The point of a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.x[lane], self.y[lane], self.z[lane])
+    }
+}
+
+/// Vectors in registers.
+#[derive(Clone, Copy)]
+pub(crate) struct Vectors {
+    pub(crate) x: f32x4,
+    pub(crate) y: f32x4,
+    pub(crate) z: f32x4,
+}
+
+impl Vectors {
+    #[inline(always)]
+    pub(crate) fn splat(v: Vec3) -> Self {
+        Self {
+            x: f32x4::splat(v.x),
+            y: f32x4::splat(v.y),
+            z: f32x4::splat(v.z),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn dot(self, other: Self) -> f32x4 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    pub(crate) fn length(self) -> f32x4 {
+        self.dot(self).sqrt()
+    }
+
+    #[inline(always)]
+    pub(crate) fn times(self, factor: f32x4) -> Self {
+        Self {
+            x: self.x * factor,
+            y: self.y * factor,
+            z: self.z * factor,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn minus(self, other: Self) -> Self {
+        Self {
+            x: self.x - other.x,
+            y: self.y - other.y,
+            z: self.z - other.z,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            x: self.x + other.x,
+            y: self.y + other.y,
+            z: self.z + other.z,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn negated(self) -> Self {
+        Self {
+            x: -self.x,
+            y: -self.y,
+            z: -self.z,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self {
+            x: self.x.abs(),
+            y: self.y.abs(),
+            z: self.z.abs(),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn at_least_zero(self) -> Self {
+        Self {
+            x: self.x.fast_max(f32x4::ZERO),
+            y: self.y.fast_max(f32x4::ZERO),
+            z: self.z.fast_max(f32x4::ZERO),
+        }
+    }
+
+    /// Each coordinate, which must not be negative, with the sign of that of another vector.
+    #[inline(always)]
+    pub(crate) fn with_signs_of(self, other: Self) -> Self {
+        Self {
+            x: self.x.copysign(other.x),
+            y: self.y.copysign(other.y),
+            z: self.z.copysign(other.z),
+        }
+    }
+
+    /// All turned by a rotation.
+    #[inline(always)]
+    pub(crate) fn rotated(self, rotation: &Mat3) -> Self {
+        Self::splat(rotation.x_axis)
+            .times(self.x)
+            .plus(Self::splat(rotation.y_axis).times(self.y))
+            .plus(Self::splat(rotation.z_axis).times(self.z))
+    }
+
+    /// The points of a box that are closest to these; the lowest corner for what is no number.
+    #[inline(always)]
+    pub(crate) fn clamped(self, bounds: &Aabb) -> Self {
+        let (min, max) = (Self::splat(bounds.min), Self::splat(bounds.max));
+        Self {
+            x: self.x.fast_max(min.x).fast_min(max.x),
+            y: self.y.fast_max(min.y).fast_min(max.y),
+            z: self.z.fast_max(min.z).fast_min(max.z),
+        }
+    }
+}
+
+impl Vectors {
+    /// How far balls around these points may reach without leaving a box, negative outside of it.
+    #[inline(always)]
+    pub(crate) fn room_in(self, bounds: &Aabb) -> f32x4 {
+        let low = self.minus(Self::splat(bounds.min));
+        let high = Self::splat(bounds.max).minus(self);
+        let least = |v: Self| v.x.fast_min(v.y).fast_min(v.z);
+        least(low).fast_min(least(high))
+    }
+}
+
+impl From<Points> for Vectors {
+    #[inline(always)]
+    fn from(p: Points) -> Self {
+        Self {
+            x: f32x4::new(p.x),
+            y: f32x4::new(p.y),
+            z: f32x4::new(p.z),
+        }
+    }
+}
+
+impl From<Vectors> for Points {
+    #[inline(always)]
+    fn from(v: Vectors) -> Self {
+        Self {
+            x: v.x.to_array(),
+            y: v.y.to_array(),
+            z: v.z.to_array(),
+        }
+    }
+}
+
+impl Discs {
+    /// As thick as they are wide.
+    #[inline(always)]
+    pub fn balls(centers: &Points, radii: [f32; LANES]) -> Self {
+        Self {
+            centers: *centers,
+            radii,
+            normals: Points::splat(Vec3::Y),
+            thickness: radii,
+        }
+    }
+
+    /// How much more than at its centre a linear function with the given gradients (per metre) is
+    /// in a disc at most.
+    #[inline(always)]
+    pub(crate) fn rise(&self, gradients: Vectors) -> f32x4 {
+        let normals = Vectors::from(self.normals);
+        let radii = f32x4::new(self.radii);
+        let across = gradients.dot(normals);
+        let along = gradients.minus(normals.times(across)).length();
+        let across = across.abs();
+        // Straight up the gradient as far as the disc is thick, then on along its face.
+        let straight =
+            radii * across / gradients.length().fast_max(f32x4::splat(f32::MIN_POSITIVE));
+        let up = straight.fast_min(f32x4::new(self.thickness));
+        let aside = (radii * radii - up * up).fast_max(f32x4::ZERO).sqrt();
+        across * up + along * aside
+    }
+}

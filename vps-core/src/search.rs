@@ -1,0 +1,232 @@
+//! How a query goes through the tree.
+
+use wide::f32x4;
+
+use crate::lanes::Vectors;
+use crate::query::Query;
+use crate::tree::{Cluster, MAX_LEVELS};
+use crate::work::CountWork;
+use crate::{Contact, Discs, DistanceField, LANES, Points};
+
+/// What a search looks for: contacts with a score of at least [`least`](Self::least).
+pub(crate) trait Goal {
+    /// Whether of several clusters the one with the highest score is looked at first; otherwise
+    /// the first one is, and contacts come in the order of the points.
+    const BEST_FIRST: bool;
+
+    /// The highest score any contact in a disc (in the shell frame) can have, given upper bounds
+    /// of the penetrations.
+    fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
+        let _ = discs;
+        penetrations
+    }
+
+    /// The score from which on contacts matter; it may rise with what was offered.
+    fn least(&self) -> f32;
+
+    /// Takes a contact with a penetration of at least minus the margin. False ends the search.
+    fn offer(&mut self, contact: Contact) -> bool;
+}
+
+/// The children of one cluster that are still to be looked at.
+#[derive(Clone, Copy)]
+struct Frame {
+    /// Bounds of some of them, minus infinity for those that are done with.
+    bounds: f32x4,
+    /// The first one with a bound.
+    first: u32,
+    /// Those without.
+    next: u32,
+    end: u32,
+}
+
+impl Frame {
+    const EMPTY: Self = Self {
+        bounds: f32x4::splat(f32::NEG_INFINITY),
+        first: 0,
+        next: 0,
+        end: 0,
+    };
+
+    fn of(range: (u32, u32)) -> Self {
+        Self {
+            next: range.0,
+            end: range.1,
+            ..Self::EMPTY
+        }
+    }
+
+    /// The next child whose bound is not below `least`, and its bound.
+    #[inline(always)]
+    fn take(&mut self, best_first: bool, least: f32) -> Option<(u32, f32)> {
+        // Above minus infinity, whatever is asked for.
+        let least = least.max(f32::MIN);
+        let lanes = if best_first {
+            let [a, b, c, d] = self.bounds.to_array();
+            let max = |a: f32, b: f32| if a > b { a } else { b };
+            let most = max(max(a, b), max(c, d));
+            if most < least {
+                return None;
+            }
+            self.bounds.simd_eq(f32x4::splat(most))
+        } else {
+            self.bounds.simd_ge(f32x4::splat(least))
+        };
+        let lanes = lanes.to_bitmask();
+        if lanes == 0 {
+            return None;
+        }
+        let lane = lanes.trailing_zeros();
+        let bound = &mut self.bounds.as_mut_array()[lane as usize];
+        let taken = (self.first + lane, *bound);
+        *bound = f32::NEG_INFINITY;
+        Some(taken)
+    }
+}
+
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+    /// Branch and bound below the clusters `range` of a level. Nothing is left out that has the
+    /// least score, so what is best is found whatever the order.
+    #[inline(always)]
+    pub(crate) fn search<G: Goal>(&self, level: u32, range: (u32, u32), goal: &mut G) {
+        let leaves = self.tree.level_count();
+        self.descend(
+            (level, range),
+            leaves,
+            goal,
+            #[inline(always)]
+            |leaf, _, goal| {
+                let leaf = &self.tree.level(leaves)[leaf as usize];
+                self.offer_points((leaf.first, leaf.first + leaf.count), goal)
+            },
+        );
+    }
+
+    /// Goes from the clusters of one level down to level `last`, depth first, and calls `reached`
+    /// there with the clusters that may matter and their bounds, until it returns false.
+    #[inline(always)]
+    pub(crate) fn descend<G: Goal>(
+        &self,
+        (level, range): (u32, (u32, u32)),
+        last: u32,
+        goal: &mut G,
+        mut reached: impl FnMut(u32, f32, &mut G) -> bool,
+    ) {
+        if !self.is_posed {
+            return;
+        }
+        let (top, bottom) = (level as usize, last as usize);
+        let mut root = Frame::of(range);
+        self.fill(top, &mut root, goal);
+        // The first look costs little: most bodies of a scene are apart.
+        if root.next == root.end && !root.bounds.simd_ge(f32x4::splat(goal.least())).any() {
+            return;
+        }
+        let mut frames = [Frame::EMPTY; MAX_LEVELS + 1];
+        let mut at = top;
+        frames[at] = root;
+        loop {
+            let frame = &mut frames[at];
+            let Some((child, bound)) = frame.take(G::BEST_FIRST, goal.least()) else {
+                if frame.next < frame.end {
+                    self.fill(at, frame, goal);
+                } else if at == top {
+                    return;
+                } else {
+                    at -= 1;
+                }
+                continue;
+            };
+            if at == bottom {
+                if !reached(child, bound, goal) {
+                    return;
+                }
+            } else {
+                let cluster = self.tree.level(at as u32)[child as usize];
+                at += 1;
+                let mut frame = Frame::of((cluster.first, cluster.first + cluster.count));
+                self.fill(at, &mut frame, goal);
+                frames[at] = frame;
+            }
+        }
+    }
+
+    /// Bounds the next children of a frame.
+    #[inline(always)]
+    fn fill<G: Goal>(&self, level: usize, frame: &mut Frame, goal: &G) {
+        let count = (frame.end - frame.next).min(LANES as u32);
+        self.work.spheres(count);
+        frame.first = frame.next;
+        frame.next += count;
+        let all = self.tree.level(level as u32);
+        let clusters = &all[frame.first as usize..frame.next as usize];
+        let (discs, penetrations) = self.bounds_of(clusters);
+        let bounds = goal.bounds(&discs, f32x4::new(penetrations));
+        // What is no number is below everything, and so are the lanes that are not in use.
+        let counts = f32x4::new([0.0, 1.0, 2.0, 3.0]).simd_lt(f32x4::splat(count as f32))
+            & bounds.simd_eq(bounds);
+        frame.bounds = counts.select(bounds, f32x4::splat(f32::NEG_INFINITY));
+    }
+
+    /// The discs of up to [`LANES`] clusters in the shell frame, and bounds of the penetration in
+    /// them.
+    #[inline(always)]
+    pub(crate) fn bounds_of(&self, clusters: &[Cluster]) -> (Discs, [f32; LANES]) {
+        let last = clusters.len() - 1;
+        let disc = |lane: usize| clusters[lane.min(last)].disc();
+        let (a, b, c, d) = (disc(0), disc(1), disc(2), disc(3));
+        let [x, y, z, radii] = f32x4::transpose([a.0, b.0, c.0, d.0]);
+        let centers = Vectors { x, y, z };
+        let [x, y, z, thickness] = f32x4::transpose([a.1, b.1, c.1, d.1]);
+        let normals = Vectors { x, y, z };
+        let discs = Discs {
+            centers: centers.into(),
+            radii: (radii + self.ball_slack).to_array(),
+            normals: normals.into(),
+            thickness: (thickness + self.ball_slack).to_array(),
+        };
+        let in_field = Discs {
+            centers: self.to_field(centers).into(),
+            normals: normals.rotated(&self.rotation).into(),
+            ..discs
+        };
+        (discs, self.field.penetration_bounds(&in_field))
+    }
+
+    /// Tests points one after the other. False ends the search.
+    #[inline(always)]
+    pub(crate) fn offer_points<G: Goal>(&self, (first, end): (u32, u32), goal: &mut G) -> bool {
+        if !self.is_posed {
+            return false;
+        }
+        let (points, normals) = (self.tree.points(), self.tree.normals());
+        self.work.points(end - first);
+        let mut next = first as usize;
+        let end = end as usize;
+        while next < end {
+            let range = next..end.min(next + LANES);
+            let positions = Points::padded(&points[range.clone()]);
+            let inward = Points::padded(&normals[range.clone()]);
+            let penetrations = self.field.penetrations(
+                &self.to_field(positions.into()).into(),
+                &Vectors::from(inward).rotated(&self.rotation).into(),
+            );
+            for (lane, index) in range.enumerate() {
+                let penetration = penetrations[lane];
+                if penetration >= -self.margin {
+                    let contact = Contact {
+                        point: index as u32,
+                        position: positions.get(lane),
+                        normal: inward.get(lane),
+                        penetration,
+                    };
+                    if !goal.offer(contact) {
+                        return false;
+                    }
+                }
+            }
+            next += LANES;
+        }
+        true
+    }
+}

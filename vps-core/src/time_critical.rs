@@ -1,0 +1,127 @@
+use glamx::Vec3;
+
+use crate::dispatch::dispatch;
+use crate::query::{All, Every, TOP};
+use crate::work::CountWork;
+use crate::{Contact, DistanceField, Query, Weight, Wrench};
+
+/// What a query knows of the contact set when its time is over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The deepest of the points that were tested.
+    pub deepest: Option<Contact>,
+    /// No contact has a larger penetration than this, in metres; equal to that of the deepest once
+    /// all is known, and −margin if there is no contact.
+    pub penetration_bound: f32,
+    /// Penalty force and torque with [`Weight::Area`], from the last level that was finished: each
+    /// cluster as if all of it were as deep as its parent point.
+    pub wrench: Wrench,
+    /// That level, 0 for none.
+    pub level: u32,
+    /// Whether all contacts were found: the result is that of the whole query.
+    pub is_complete: bool,
+}
+
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+    /// Finds out as much as there is time for, coarse first: the parent points of one level after
+    /// the other (section 2.1.2), in the end all points. The paper's future work.
+    ///
+    /// `go_on` is asked before each point (at last, before those of each leaf), given how many were
+    /// tested so far, and ends the query by `false`: `|tested| tested < 500`, or `|_| clock() < deadline`. The torque is about
+    /// `center`, in the shell frame. With more time the deepest contact gets no less deep and the
+    /// bound no higher.
+    ///
+    /// Needs no memory: each level is reached from the top again, which all in all looks at a few
+    /// times as many spheres as [`for_each_contact`](Self::for_each_contact).
+    pub fn time_critical(&self, center: Vec3, mut go_on: impl FnMut(u64) -> bool) -> Estimate {
+        let mut estimate = Estimate {
+            deepest: None,
+            penetration_bound: f32::INFINITY,
+            wrench: Wrench::default(),
+            level: 0,
+            is_complete: false,
+        };
+        let mut tested = 0;
+        let mut every = Every {
+            margin: self.margin,
+        };
+        for level in 1..=self.tree.level_count() {
+            let clusters = self.tree.level(level);
+            let mut pass = Pass::default();
+            let mut bound = -self.margin;
+            let mut stopped = false;
+            let mut test = |cluster: u32, its_bound: f32, _: &mut Every| {
+                if !go_on(tested) {
+                    stopped = true;
+                    return false;
+                }
+                tested += 1;
+                bound = bound.max(its_bound);
+                let cluster = &clusters[cluster as usize];
+                pass.reached = true;
+                if let Some(contact) = self.test_point(cluster.parent_point) {
+                    pass.add(&contact, cluster.area, center, &mut estimate.deepest);
+                }
+                true
+            };
+            dispatch(
+                #[inline(always)]
+                || self.descend((1, TOP), level, &mut every, &mut test),
+            );
+            if stopped {
+                return estimate;
+            }
+            estimate.penetration_bound = estimate.penetration_bound.min(bound);
+            estimate.wrench = pass.wrench;
+            estimate.level = level;
+            if !pass.reached {
+                estimate.is_complete = true;
+                return estimate;
+            }
+        }
+        let leaf_level = self.tree.level_count();
+        let leaves = self.tree.level(leaf_level);
+        let mut pass = Pass::default();
+        let mut stopped = false;
+        let mut test = |leaf: u32, _: f32, _: &mut Every| {
+            if !go_on(tested) {
+                stopped = true;
+                return false;
+            }
+            let leaf = &leaves[leaf as usize];
+            tested += u64::from(leaf.count);
+            let mut points = All::new(self.margin, |contact: Contact| {
+                let area = self.tree.area(contact.point as usize);
+                pass.add(&contact, area, center, &mut estimate.deepest);
+            });
+            self.offer_points((leaf.first, leaf.first + leaf.count), &mut points)
+        };
+        dispatch(
+            #[inline(always)]
+            || self.descend((1, TOP), leaf_level, &mut every, &mut test),
+        );
+        if !stopped {
+            let deepest = estimate.deepest.map_or(-self.margin, |d| d.penetration);
+            estimate.penetration_bound = deepest;
+            estimate.wrench = pass.wrench;
+            estimate.is_complete = true;
+        }
+        estimate
+    }
+}
+
+/// What one level tells.
+#[derive(Default)]
+struct Pass {
+    wrench: Wrench,
+    reached: bool,
+}
+
+impl Pass {
+    fn add(&mut self, contact: &Contact, area: f32, center: Vec3, deepest: &mut Option<Contact>) {
+        self.wrench.add(contact, Weight::Area.of(area), center);
+        if deepest.as_ref().is_none_or(|d| contact.is_deeper(d)) {
+            *deepest = Some(*contact);
+        }
+    }
+}
