@@ -104,3 +104,121 @@ fn bend_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
         UNKNOWN_BEND
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use vps_core::conformance::check;
+    use vps_core::{
+        Aabb, Accuracy, Discs, DistanceField, Grid, Points, Quat, Values, Vec3, Voxelmap,
+    };
+
+    use super::*;
+
+    const VOXELS: u32 = 24;
+
+    /// A map of voxels of one metre with exact values.
+    fn map_of(penetration: impl Fn(Vec3) -> f32) -> Voxelmap<'static> {
+        let grid = Grid::new(Vec3::splat(-0.5 * VOXELS as f32), 1.0, [VOXELS; 3]).unwrap();
+        let mut values = Vec::new();
+        for z in 0..VOXELS {
+            for y in 0..VOXELS {
+                for x in 0..VOXELS {
+                    values.push(penetration(grid.center([x, y, z])));
+                }
+            }
+        }
+        let store = Store::dense(grid.dims(), Values::Floats(values.into())).unwrap();
+        let bends = bends(&store, 1.0);
+        let accuracy = Accuracy {
+            near_m: 0.0,
+            far_m: 0.0,
+            band_m: 100.0,
+        };
+        let solid = Aabb {
+            min: Vec3::splat(-11.0),
+            max: Vec3::splat(11.0),
+        };
+        Voxelmap::new(grid, 1.0, solid, accuracy, store, bends.into()).unwrap()
+    }
+
+    /// Where a field is as uneven as it can be, from half-way between voxels to the worst place; how
+    /// far a bound is over what is there at least, as a part of the radius.
+    fn check_around(map: &Voxelmap<'_>, worst: impl Fn(Vec3) -> Vec3) -> f32 {
+        let field = map.trilinear();
+        let mut tight = f32::INFINITY;
+        for z in -4..4 {
+            for y in -4..4 {
+                for x in -4..4 {
+                    for shift in [Vec3::ZERO, Vec3::splat(0.5), Vec3::new(0.5, 0.0, 0.499)] {
+                        let center = Vec3::new(x as f32, y as f32, z as f32) + shift;
+                        let point = worst(center);
+                        let radius = center.distance(point);
+                        if radius == 0.0 || radius > 6.0 {
+                            continue;
+                        }
+                        let inside = (point - center) / radius;
+                        let turn = Quat::from_axis_angle(Vec3::Y, 0.4);
+                        for normal in [inside, inside.any_orthonormal_vector(), turn * inside] {
+                            check(&field, center, radius, inside, normal).unwrap();
+                        }
+                        let over = field.penetration_bound(center, radius)
+                            - field.penetration(point, Vec3::Y);
+                        tight = tight.min(over / radius);
+                    }
+                }
+            }
+        }
+        tight
+    }
+
+    /// The distance to one voxel's centre: around it, interpolation is as steep as it gets.
+    #[test]
+    fn a_point_is_bounded() {
+        let at = Vec3::splat(0.5);
+        assert!(check_around(&map_of(|p| -p.distance(at)), |_| at) < 0.2);
+    }
+
+    /// Two half-spaces that meet: across the groove the field bends as much as it can.
+    #[test]
+    fn a_groove_is_bounded() {
+        for normal in [
+            Vec3::X,
+            Vec3::new(1.0, 1.0, 0.0),
+            Vec3::ONE,
+            Vec3::new(1.0, 0.3, -0.2),
+        ] {
+            let normal = normal.normalize();
+            let map = map_of(|p| p.dot(normal).abs() - 3.0);
+            for further in [0.1, 0.5, 1.0, 2.0, 4.0] {
+                check_around(&map, |center| {
+                    let to_groove = -center.dot(normal);
+                    center + normal * (to_groove + to_groove.signum() * further)
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_flat_does_not_bend() {
+        let slope = Vec3::new(0.25, -0.5, 0.125);
+        let map = map_of(|p| p.dot(slope));
+        assert!(map.bends().iter().all(|&b| b == 0));
+        // So a disc across the slope has no more than its centre.
+        let normal = slope.normalize();
+        check(
+            &map.trilinear(),
+            Vec3::ONE,
+            3.0,
+            normal.any_orthonormal_vector(),
+            normal,
+        )
+        .unwrap();
+        let discs = Discs {
+            thickness: [0.0; 4],
+            normals: Points::splat(normal),
+            ..Discs::balls(&Points::splat(Vec3::ONE), [3.0; 4])
+        };
+        let bound = map.trilinear().penetration_bounds(&discs)[0];
+        assert!((bound - Vec3::ONE.dot(slope)).abs() < 1e-4);
+    }
+}

@@ -1,13 +1,17 @@
 //! What must hold for any mesh and any pose.
 
-use crate::support::{asset, bumpy_mesh, direction, encoding, exact_penetration, vector};
+use crate::support::{
+    asset, asset_of, bumpy_mesh, density, direction, encoding, exact_penetration, vector,
+};
 use glamx::DVec3;
 use proptest::prelude::*;
 use vps_build::{
     BuildOptions, ClosestPoints, Density, Encoding, Mesh, PointCount, Resolution, build,
 };
 use vps_core::conformance::check;
-use vps_core::{Ball, Capsule, Cuboid, Cylinder, DistanceField, HalfSpace, Vec3, Voxelmap, encode};
+use vps_core::{
+    Ball, Capsule, Cuboid, Cylinder, DistanceField, HalfSpace, Quat, Vec3, Voxelmap, encode,
+};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
@@ -128,6 +132,33 @@ proptest! {
             check(&map.local(), center, radius, inside, normal).unwrap();
             check(&map.linear(), center, radius, inside, normal).unwrap();
             check(&map.trilinear(), center, radius, inside, normal).unwrap();
+        }
+    }
+
+    /// Close to the surface, where a disc is bounded by how little the field bends: points of the
+    /// disc's rim, the highest of them where the field rises.
+    #[test]
+    fn small_discs_are_bounded(
+        mesh in bumpy_mesh(), encoding in encoding(), density in density(),
+        discs in prop::collection::vec(
+            (0..1280_usize, 0.0..1.0_f32, -2.0..2.0_f32, 0.0..7.0_f32, direction(), 0.0..6.3_f32),
+            100),
+    ) {
+        let asset = asset_of(&mesh, 10, encoding, density);
+        let map = &asset.voxelmap;
+        let (field, s) = (map.trilinear(), map.grid().voxel_size());
+        for (t, u, off, radius, normal, turn) in discs {
+            let [a, b, c] = mesh.triangles()[t].map(|v| mesh.vertices()[v as usize].as_vec3());
+            let place = a.lerp(b, u).lerp(c, 0.5);
+            let outward = (b - a).cross(c - a).normalize_or(Vec3::Y);
+            let center = place + outward * (off * s);
+            let radius = radius * s;
+            let rising = field.inward_direction(center);
+            let along = (rising - normal * rising.dot(normal)).normalize_or(normal.any_orthonormal_vector());
+            check(&field, center, radius, along, normal).unwrap();
+            let aside = Quat::from_axis_angle(normal, turn) * along;
+            check(&field, center, radius, aside, normal).unwrap();
+            check(&field, center, radius, rising, normal).unwrap();
         }
     }
 
