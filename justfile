@@ -30,7 +30,8 @@ test: (test-with "2014") no-std
 
 # The tests of queries and fields with 50 times as many random cases, all new
 test-long times="50":
-    VPS_TEST_TIMES={{ times }} cargo test --locked --release -p vps-build --test it -- queries fields --nocapture
+    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-build --test it -- queries conform bounded within
+    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-rapier --test oracle
 
 # All tests, with new random cases (proptest keeps what failed: commit it)
 test-random: (test-with "")
@@ -49,6 +50,10 @@ no-std:
 # Speed, sizes and errors of the builder, into reports/builder
 builder-report: fetch
     cargo run --locked --release --quiet -p vps-build --example builder_report
+
+# Speed of queries beside parry's, into reports/queries
+query-report: fetch
+    cargo bench --locked -p vps-compare --bench queries
 
 # Random bytes for the readers and the builder, so many seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build

@@ -1,7 +1,7 @@
 //! What must hold for any mesh and any pose.
 
 use crate::support::{
-    asset, asset_of, bumpy_mesh, density, direction, encoding, exact_penetration, vector,
+    asset, asset_of, bumpy_mesh, cases, density, direction, encoding, exact_penetration, vector,
 };
 use glamx::DVec3;
 use proptest::prelude::*;
@@ -14,7 +14,7 @@ use vps_core::{
 };
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(cases(48))]
 
     /// Validation of the tree promises the same; here it is counted out.
     #[test]

@@ -8,13 +8,7 @@ use vps_core::{
     Work, Wrench,
 };
 
-use crate::support::{asset, asset_of, bumpy_mesh, density, encoding, pose, vector};
-
-/// Cases of a test: few in the usual run, more in the long one.
-fn cases(usual: u32) -> ProptestConfig {
-    let times = std::env::var("VPS_TEST_TIMES").map_or(1, |t| t.parse().unwrap());
-    ProptestConfig::with_cases(usual * times)
-}
+use crate::support::{asset, asset_of, bumpy_mesh, cases, density, encoding, pose, vector};
 
 fn contacts<F: DistanceField + ?Sized>(query: &Query<'_, F>) -> Vec<Contact> {
     let mut contacts = Vec::new();

@@ -5,6 +5,12 @@ use proptest::prelude::*;
 use vps_build::{BuildOptions, Density, Encoding, Mesh, PointCount, Resolution, build};
 use vps_core::{Asset, Pose3, Quat, Vec3};
 
+/// Cases of a test: few in the usual run, more in the long one.
+pub(crate) fn cases(usual: u32) -> ProptestConfig {
+    let times = std::env::var("VPS_TEST_TIMES").map_or(1, |t| t.parse().unwrap());
+    ProptestConfig::with_cases(usual * times)
+}
+
 /// A bumpy ball about 1 m across: closed, facing outwards, not convex.
 pub(crate) fn bumpy_mesh() -> impl Strategy<Value = Mesh> {
     let bump = (direction(), -0.35..0.35_f64, 1.0..12.0_f64);

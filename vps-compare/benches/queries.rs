@@ -1,0 +1,618 @@
+//! How long queries take beside those of parry, in the same run and for the same poses, and the
+//! table of it in `reports/queries`. Fetch the bunny first: `just query-report`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use criterion::{BenchmarkGroup, Criterion, SamplingMode, measurement::WallTime};
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::prelude::*;
+use vps_build::{
+    BuildOptions, Density, Mesh, PointCount, Resolution, build, models, read_mesh, write_atomically,
+};
+use vps_compare::{
+    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh, Vps,
+    VpsGround,
+};
+use vps_core::{Asset, DistanceField, PointSphereTree, Query, Weight, Work};
+use vps_rapier::{Sampling, VpsDispatcher, VpsShape};
+
+const GROUND: [f64; 3] = [2.0, 0.2, 2.0];
+/// How far ahead contacts are asked for in metres: rapier's default.
+const PREDICTION: f32 = 0.02;
+const FINE: u32 = 35_596;
+const COARSE: u32 = 799;
+
+fn main() {
+    let mut criterion = Criterion::default()
+        .configure_from_args()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    let mut table = Table::default();
+    let bunny = bunny();
+    let poses = rolling(&bunny);
+    ground(&mut criterion, &mut table, &bunny, &poses);
+    core(&mut criterion, &mut table, &bunny, &poses);
+    interlocked(&mut criterion, &mut table, &bunny);
+    against_points(&mut criterion, &mut table, &bunny, &poses);
+    against_triangles(&mut criterion, &mut table);
+    criterion.final_summary();
+    table.write();
+}
+
+fn bunny() -> Mesh {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.cache/models/bunny.obj");
+    let bunny = read_mesh(&path, None).expect("the bunny: `just fetch` brings it");
+    bunny.scaled(0.135).expect("a sound scale")
+}
+
+fn bunny_options(points: PointCount) -> BuildOptions {
+    BuildOptions {
+        resolution: Resolution::VoxelSize(0.00256),
+        margin: 100,
+        points,
+        ..BuildOptions::default()
+    }
+}
+
+fn ground_options(density: Density) -> BuildOptions {
+    BuildOptions {
+        resolution: Resolution::VoxelSize(0.005),
+        margin: 4,
+        points: PointCount::About(10),
+        density,
+        ..BuildOptions::default()
+    }
+}
+
+fn asset(mesh: &Mesh, options: &BuildOptions) -> Asset<'static> {
+    build(mesh, options, &|_| ()).expect("a sound mesh").asset
+}
+
+fn vps(mesh: &Mesh, points: u32, ground: VpsGround) -> Prepared {
+    let scene = Scene {
+        body: mesh,
+        ground_extents: GROUND,
+    };
+    let assets = |mesh: &Mesh, options: &BuildOptions| Ok(Arc::new(asset(mesh, options)));
+    let vps = Vps {
+        body: bunny_options(PointCount::About(points)),
+        ground,
+        sampling: Sampling::Trilinear,
+        assets: &assets,
+    };
+    vps.prepare(&scene).expect("a sound scene")
+}
+
+/// Poses of a bunny that fell on the ground: in ten runs from different starts, five steps one after
+/// the other at 1.5 and at 2.5 seconds, as bodies of the ground's frame.
+fn rolling(mesh: &Mesh) -> Vec<Pose> {
+    let prepared = vps(mesh, COARSE, VpsGround::Cuboid);
+    let mut poses = Vec::new();
+    for run in 0..10 {
+        let mut world = PhysicsWorld {
+            narrow_phase: NarrowPhase::with_query_dispatcher(
+                VpsDispatcher::default().chain(DefaultQueryDispatcher),
+            ),
+            gravity: Vector::new(0.0, -10.0, 0.0),
+            ..PhysicsWorld::default()
+        };
+        world.integration_parameters.dt = 1.0 / 200.0;
+        let below = Vector::new(0.0, -0.5 * GROUND[1] as f32, 0.0);
+        let on_ground = ColliderBuilder::new(prepared.ground.clone());
+        world.insert(RigidBodyBuilder::fixed().translation(below), on_ground);
+        // Turned by the golden angle from run to run.
+        let turn = Rotation::from_scaled_axis(Vector::new(1.0, 0.5, 0.3) * (2.4 * run as f32));
+        let body = RigidBodyBuilder::dynamic()
+            .pose(Pose::from_parts(Vector::new(0.0, 0.4, 0.0), turn))
+            .can_sleep(false);
+        let shape = ColliderBuilder::new(prepared.body.clone()).density(200.0);
+        let (handle, _) = world.insert(body, shape);
+        for step in 0..505 {
+            if (300..305).contains(&step) || step >= 500 {
+                let mut pose = *world.bodies[handle].position();
+                pose.translation -= below;
+                poses.push(pose);
+            }
+            world.step();
+        }
+    }
+    poses
+}
+
+/// What was measured: seconds, and what else a query did.
+#[derive(Default)]
+struct Table {
+    text: String,
+}
+
+impl Table {
+    /// Measures something done for all poses; what counts is the mean for one.
+    fn measure<P>(
+        &mut self,
+        group: &mut BenchmarkGroup<'_, WallTime>,
+        group_name: &str,
+        name: &str,
+        poses: &[P],
+        mut query: impl FnMut(&P),
+    ) -> f64 {
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| poses.iter().for_each(&mut query));
+        });
+        let file = target().join(format!("criterion/{group_name}/{name}/new/estimates.json"));
+        let estimates = std::fs::read_to_string(file).expect("criterion has written it");
+        let estimates: serde_json::Value = serde_json::from_str(&estimates).expect("JSON");
+        let ns = estimates["mean"]["point_estimate"]
+            .as_f64()
+            .expect("a mean");
+        ns * 1e-9 / poses.len() as f64
+    }
+
+    fn line(&mut self, line: &str) {
+        writeln!(self.text, "{line}").expect("memory");
+    }
+
+    fn write(&self) {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reports/queries/README.md");
+        write_atomically(&file, self.text.as_bytes()).expect("a place for the report");
+        println!("{}", self.text);
+    }
+}
+
+fn target() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../target")
+}
+
+fn group<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group.sampling_mode(SamplingMode::Flat);
+    group
+}
+
+/// Time in the unit that fits.
+fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-6 => format!("{:.3} µs", s * 1e6),
+        s if s < 1e-3 => format!("{:.2} µs", s * 1e6),
+        s if s < 1.0 => format!("{:.2} ms", s * 1e3),
+        s => format!("{s:.1} s"),
+    }
+}
+
+/// What an engine asks for, of each algorithm.
+fn ground(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
+    let scene = Scene {
+        body: bunny,
+        ground_extents: GROUND,
+    };
+    let dense = || VpsGround::Voxelmap(ground_options(Density::Dense));
+    let sparse = || VpsGround::Voxelmap(ground_options(Density::Sparse));
+    let decomposition = ConvexDecomposition {
+        parts: 8,
+        vertices: 100,
+        resolution: 64,
+    };
+    let cases = [
+        (
+            "fine_cuboid",
+            "VPS 35 596, cuboid",
+            vps(bunny, FINE, VpsGround::Cuboid),
+        ),
+        (
+            "fine_dense",
+            "VPS 35 596, dense voxelmap",
+            vps(bunny, FINE, dense()),
+        ),
+        (
+            "fine_sparse",
+            "VPS 35 596, sparse voxelmap",
+            vps(bunny, FINE, sparse()),
+        ),
+        (
+            "coarse_cuboid",
+            "VPS 799, cuboid",
+            vps(bunny, COARSE, VpsGround::Cuboid),
+        ),
+        (
+            "coarse_dense",
+            "VPS 799, dense voxelmap",
+            vps(bunny, COARSE, dense()),
+        ),
+        (
+            "hull",
+            "convex hull, 42 points",
+            ConvexHull.prepare(&scene).unwrap(),
+        ),
+        (
+            "decomposition",
+            "convex decomposition, 8 parts",
+            decomposition.prepare(&scene).unwrap(),
+        ),
+        (
+            "trimesh",
+            "triangle mesh, box",
+            Trimesh.prepare(&scene).unwrap(),
+        ),
+    ];
+    let mut group = group(criterion, "ground");
+    let mut seconds = BTreeMap::new();
+    table.line("# Queries beside parry's\n");
+    table.line(
+        "Written by `just query-report` (criterion, one core, means over all poses). Poses: ten\n\
+         bunnies fallen on the ground, five steps one after the other at 1.5 s and at 2.5 s. Other\n\
+         programs and the machine's own mood move all times together: compare within the report.\n",
+    );
+    table.line("## Contact manifolds as an engine asks for them, 20 mm ahead\n");
+    table.line(
+        "| algorithm | a query | triangle mesh / this | decomposition / this | this / hull |",
+    );
+    table.line("|---|---|---|---|---|");
+    for (name, _, prepared) in &cases {
+        // As an engine keeps them, for bodies that go on from pose to pose.
+        let mut contacts = Contacts::default();
+        let poses = if *name == "trimesh" {
+            &poses[..20]
+        } else {
+            poses
+        };
+        let time = table.measure(&mut group, "ground", name, poses, |pose| {
+            prepared
+                .query(pose, PREDICTION, &mut contacts)
+                .expect("a pair of shapes it knows");
+        });
+        seconds.insert(*name, time);
+    }
+    for (name, label, _) in &cases {
+        let own = seconds[name];
+        table.line(&format!(
+            "| {label} | {} | {:.0} | {:.2} | {:.1} |",
+            time(own),
+            seconds["trimesh"] / own,
+            seconds["decomposition"] / own,
+            own / seconds["hull"],
+        ));
+    }
+    table.line(
+        "\nMust: the fine bunny a thousandth of the triangle mesh and faster than the decomposition,\n\
+         the coarse one at most 20 times the hull. Aim: 5000, ten times faster, 5 times.\n\
+         The triangle mesh is measured for the first 20 poses alone.\n",
+    );
+}
+
+/// The queries themselves.
+fn core(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
+    let shell = asset(bunny, &bunny_options(PointCount::About(FINE)));
+    let tree = &shell.tree;
+    let maps = [Density::Dense, Density::Sparse].map(|density| {
+        let ground = Mesh::cuboid(GROUND).expect("a box");
+        let around = Mesh::cuboid([0.8; 3]).expect("a box");
+        let options = ground_options(density);
+        [asset(&ground, &options), asset(&around, &options)]
+    });
+    let cuboid = vps_core::Cuboid::new(vps_core::Vec3::new(1.0, 0.1, 1.0));
+    let inside: Vec<_> = poses
+        .iter()
+        .step_by(5)
+        .map(|p| Pose::from_parts(-(p.rotation * shell.mass.center()), p.rotation))
+        .collect();
+    let apart: Vec<_> = poses
+        .iter()
+        .map(|p| Pose::from_parts(p.translation + Vector::new(0.0, 0.6, 0.0), p.rotation))
+        .collect();
+    table.line("## Query by query, the bunny of 35 596 points\n");
+    table.line("On the ground 20 mm ahead, and without; all points inside of a cube without.\n");
+    table.line(
+        "| query | cuboid | dense voxelmap | sparse voxelmap | sparse / dense | spheres | points |",
+    );
+    table.line("|---|---|---|---|---|---|---|");
+    let sets: [(&str, &str, usize, &[Pose], f32); 4] = [
+        (
+            "ground_ahead",
+            "on the ground, 20 mm ahead",
+            0,
+            poses,
+            PREDICTION,
+        ),
+        ("ground", "on the ground", 0, poses, 0.0),
+        ("inside", "all inside", 1, &inside, 0.0),
+        ("apart", "apart by twice its size", 0, &apart, PREDICTION),
+    ];
+    for (set, label, which, poses, margin) in sets {
+        let [dense, sparse] = [&maps[0][which], &maps[1][which]].map(|a| a.voxelmap.trilinear());
+        for (name, what) in QUERIES {
+            let mut group = group(criterion, &format!("{set}_{name}"));
+            let group_name = format!("{set}_{name}");
+            let mut run = |field_name: &str, field: &dyn RunQuery| {
+                table.measure(&mut group, &group_name, field_name, poses, |pose| {
+                    field.run(name, tree, *pose, margin, None);
+                })
+            };
+            let exact = (which == 0).then(|| run("cuboid", &cuboid));
+            let [d, s] = [run("dense", &dense), run("sparse", &sparse)];
+            let work = Work::default();
+            for pose in poses {
+                dense.run(name, tree, *pose, margin, Some(&work));
+            }
+            let mean = |n: u64| n as f64 / poses.len() as f64;
+            table.line(&format!(
+                "| {label}: {what} | {} | {} | {} | {:.2} | {:.0} | {:.0} |",
+                exact.map_or(String::new(), time),
+                time(d),
+                time(s),
+                s / d,
+                mean(work.spheres()),
+                mean(work.points()),
+            ));
+        }
+    }
+    table.line(
+        "\nSpheres and points are those of the dense map. Must: apart 0.2 µs, all inside 1 ms, sparse\n\
+         at most 1.3 times dense. Aim: 0.05 µs, 0.2 ms, faster. Segmented by listing is the paper's\n\
+         way: all contacts, of which each segment's deepest is kept.\n",
+    );
+}
+
+const QUERIES: [(&str, &str); 10] = [
+    ("touches", "touches"),
+    ("deepest", "deepest"),
+    ("manifold", "manifold of 4"),
+    ("wrench", "force and torque"),
+    ("segments_2", "segments, L = 2"),
+    ("segments_3", "segments, L = 3"),
+    ("segments_4", "segments, L = 4"),
+    ("segments_5", "segments, L = 5"),
+    ("listed_1", "L = 1 by listing"),
+    ("listed_5", "L = 5 by listing"),
+];
+
+/// Queries by name, so that each is compiled once for a kind of field.
+trait RunQuery {
+    fn run(
+        &self,
+        name: &str,
+        tree: &PointSphereTree<'_>,
+        pose: Pose,
+        margin: f32,
+        work: Option<&Work>,
+    );
+}
+
+impl<F: DistanceField> RunQuery for F {
+    fn run(
+        &self,
+        name: &str,
+        tree: &PointSphereTree<'_>,
+        pose: Pose,
+        margin: f32,
+        work: Option<&Work>,
+    ) {
+        let query = Query::new(tree, self, pose).with_margin(margin);
+        macro_rules! ask {
+            ($query:expr) => {{
+                let query = $query;
+                match name {
+                    "touches" => {
+                        assert!(query.touches() || margin == 0.0 || pose.translation.y > 0.3)
+                    }
+                    "deepest" => {
+                        std::hint::black_box(query.deepest());
+                    }
+                    "manifold" => {
+                        std::hint::black_box(query.manifold::<4>());
+                    }
+                    "wrench" => {
+                        std::hint::black_box(query.wrench(vps_core::Vec3::ZERO, Weight::Area));
+                    }
+                    _ => {
+                        let level = name.as_bytes()[name.len() - 1] - b'0';
+                        let mut sum = 0.0;
+                        if name.starts_with("segments") {
+                            query.for_each_segment(level.into(), |_, c| sum += c.penetration);
+                        } else {
+                            sum = listed(&query, tree, level.into());
+                        }
+                        std::hint::black_box(sum);
+                    }
+                }
+            }};
+        }
+        match work {
+            None => ask!(query),
+            Some(work) => ask!(query.counting(work)),
+        }
+    }
+}
+
+/// The segmented traverse as section 2.4 has it: all contacts are listed, and each replaces that of
+/// its segment if it is deeper.
+fn listed<F: DistanceField, W: vps_core::CountWork>(
+    query: &Query<'_, F, W>,
+    tree: &PointSphereTree<'_>,
+    level: u32,
+) -> f32 {
+    let segments = tree.level(level);
+    let (mut segment, mut end) = (0, tree.points_below(level, &segments[0]).end);
+    let (mut deepest, mut sum) = (0.0_f32, 0.0);
+    query.for_each_contact(|contact| {
+        while contact.point as usize >= end {
+            segment += 1;
+            end = tree.points_below(level, &segments[segment]).end;
+            sum += deepest;
+            deepest = 0.0;
+        }
+        deepest = deepest.max(contact.penetration);
+    });
+    sum + deepest
+}
+
+/// Two fine bunnies, one ear in the other.
+fn interlocked(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh) {
+    let shape: SharedShape = VpsShape::new(Arc::new(asset(
+        bunny,
+        &bunny_options(PointCount::About(FINE)),
+    )))
+    .into();
+    let vertices: Vec<_> = bunny.vertices().iter().map(|v| v.as_vec3()).collect();
+    let mesh = SharedShape::trimesh(vertices, bunny.triangles().to_vec()).expect("triangles");
+    // Turned half round and pushed together until some centimetres are shared.
+    let poses: Vec<_> = (0..6)
+        .map(|i| {
+            let turn = Rotation::from_scaled_axis(Vector::new(0.3, 1.0, 0.2) * (1.05 * i as f32));
+            Pose::from_parts(Vector::new(0.15, 0.02, 0.05), turn)
+        })
+        .collect();
+    table.line("## Bunny on bunny, interlocked, both fine\n");
+    table.line("| algorithm | a query | triangle mesh on triangle mesh / this |\n|---|---|---|");
+    let mut group = group(criterion, "interlocked");
+    let own = {
+        let dispatcher = VpsDispatcher::default();
+        let prepared = Prepared {
+            body: shape.clone(),
+            ground: shape,
+            dispatcher: Arc::new(dispatcher),
+            size: Vec::new(),
+        };
+        let mut contacts = Contacts::default();
+        table.measure(&mut group, "interlocked", "vps", &poses, |pose| {
+            prepared
+                .query(pose, PREDICTION, &mut contacts)
+                .expect("VPS shapes");
+        })
+    };
+    let theirs = {
+        let prepared = Prepared {
+            body: mesh.clone(),
+            ground: mesh,
+            dispatcher: Arc::new(DefaultQueryDispatcher),
+            size: Vec::new(),
+        };
+        // Seconds a query: criterion would take minutes.
+        let few = &poses[..2];
+        let start = Instant::now();
+        for pose in few {
+            let mut contacts = Contacts::default();
+            prepared
+                .query(pose, PREDICTION, &mut contacts)
+                .expect("triangle meshes");
+        }
+        start.elapsed().as_secs_f64() / few.len() as f64
+    };
+    table.line(&format!("| VPS | {} | {:.0} |", time(own), theirs / own));
+    table.line(&format!("| triangle meshes | {} | 1 |", time(theirs)));
+    table.line(
+        "\nMust: 1000. Aim: 5000. Triangle meshes are asked once, for the first two poses alone.\n",
+    );
+}
+
+/// The same surface, sampled ever finer.
+fn against_points(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
+    let ground = asset(
+        &Mesh::cuboid(GROUND).expect("a box"),
+        &ground_options(Density::Dense),
+    );
+    let field = ground.voxelmap.trilinear();
+    let poses: Vec<_> = poses.iter().step_by(5).copied().collect();
+    table.line("## Time against points, the same poses on the ground, 1 mm ahead\n");
+    table.line("| points | all contacts | contacts | ns a contact | deepest | segments, L = 4 | manifold of 4 |");
+    table.line("|---|---|---|---|---|---|---|");
+    let mut rows: Vec<[f64; 4]> = Vec::new();
+    for spacing in [0.0106, 0.00336, 0.00106, 0.000_336] {
+        let options = bunny_options(PointCount::Spacing(spacing));
+        let tree = asset(bunny, &options).tree;
+        let count = tree.point_count();
+        let name = format!("points_{count}");
+        let mut group = group(criterion, &name);
+        let margin = 0.001;
+        let mut run = |what: &str, query: &dyn Fn(&Query<'_, _>)| {
+            table.measure(&mut group, &name, what, &poses, |pose| {
+                query(&Query::new(&tree, &field, *pose).with_margin(margin));
+            })
+        };
+        let sum = std::cell::Cell::new(0.0_f32);
+        let all = run("all", &|q| {
+            q.for_each_contact(|c| sum.set(sum.get() + c.penetration));
+        });
+        let deepest = run("deepest", &|q| {
+            std::hint::black_box(q.deepest());
+        });
+        let segments = run("segments", &|q| {
+            q.for_each_segment(4, |_, c| sum.set(sum.get() + c.penetration));
+        });
+        let manifold = run("manifold", &|q| {
+            std::hint::black_box(q.manifold::<4>());
+        });
+        let mut contacts = 0;
+        for pose in &poses {
+            Query::new(&tree, &field, *pose)
+                .with_margin(margin)
+                .for_each_contact(|_| contacts += 1);
+        }
+        let contacts = contacts as f64 / poses.len() as f64;
+        table.line(&format!(
+            "| {count} | {} | {contacts:.0} | {:.0} | {} | {} | {} |",
+            time(all),
+            all * 1e9 / contacts.max(1.0),
+            time(deepest),
+            time(segments),
+            time(manifold),
+        ));
+        rows.push([count as f64, deepest, segments, manifold]);
+    }
+    let (first, last) = (rows[0], rows[rows.len() - 1]);
+    let power = |i: usize| (last[i] / first[i]).ln() / (last[0] / first[0]).ln();
+    table.line(&format!(
+        "\nFrom the first row to the last, time grows like the number of points to the power of {:.2}\n\
+         (deepest), {:.2} (segments), {:.2} (manifold). Must: below 0.5. Aim: logarithmic.\n",
+        power(1),
+        power(2),
+        power(3),
+    ));
+}
+
+/// The same shape and sampling, from ever more triangles.
+fn against_triangles(criterion: &mut Criterion, table: &mut Table) {
+    let options = BuildOptions {
+        resolution: Resolution::VoxelSize(0.01),
+        margin: 10,
+        points: PointCount::About(10_000),
+        ..BuildOptions::default()
+    };
+    let poses: Vec<_> = (0..50)
+        .map(|i| {
+            let turn = Rotation::from_scaled_axis(Vector::new(0.7, 0.2, 0.5) * (0.3 * i as f32));
+            Pose::from_parts(Vector::new(0.3, 0.3, 0.1), turn)
+        })
+        .collect();
+    table.line("## Time against triangles of the source mesh, a torus in a torus\n");
+    table.line("| triangles | points | manifold of 4 | force and torque |\n|---|---|---|---|");
+    for detail in [44, 264, 932] {
+        let mesh = models::torus(detail);
+        let torus = asset(&mesh, &options);
+        let field = torus.voxelmap.trilinear();
+        let name = format!("triangles_{}", mesh.triangles().len());
+        let mut group = group(criterion, &name);
+        let manifold = table.measure(&mut group, &name, "manifold", &poses, |pose| {
+            std::hint::black_box(
+                Query::new(&torus.tree, &field, *pose)
+                    .with_margin(PREDICTION)
+                    .manifold::<4>(),
+            );
+        });
+        let wrench = table.measure(&mut group, &name, "wrench", &poses, |pose| {
+            let query = Query::new(&torus.tree, &field, *pose);
+            std::hint::black_box(query.wrench(vps_core::Vec3::ZERO, Weight::Area));
+        });
+        table.line(&format!(
+            "| {} | {} | {} | {} |",
+            mesh.triangles().len(),
+            torus.tree.point_count(),
+            time(manifold),
+            time(wrench),
+        ));
+    }
+    table.line("\nMust: flat within 10 %.");
+}
