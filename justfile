@@ -44,6 +44,7 @@ test-with seed:
 
 # The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
 no-std:
+    mkdir -p target
     cargo run --locked --quiet -p vps-build --example torus -- target/torus.vps
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
