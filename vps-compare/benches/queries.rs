@@ -34,10 +34,11 @@ fn main() {
         .measurement_time(Duration::from_secs(1));
     let mut table = Table::default();
     let bunny = bunny();
-    let poses = rolling(&bunny);
-    ground(&mut criterion, &mut table, &bunny, &poses);
-    core(&mut criterion, &mut table, &bunny, &poses);
-    interlocked(&mut criterion, &mut table, &bunny);
+    let [fine, coarse] = [FINE, COARSE].map(|points| shell(&bunny, points));
+    let poses = rolling(&bunny, &coarse);
+    ground(&mut criterion, &mut table, &bunny, [&fine, &coarse], &poses);
+    core(&mut criterion, &mut table, &fine, &poses);
+    interlocked(&mut criterion, &mut table, &bunny, &fine);
     against_points(&mut criterion, &mut table, &bunny, &poses);
     against_triangles(&mut criterion, &mut table);
     criterion.final_summary();
@@ -73,14 +74,27 @@ fn asset(mesh: &Mesh, options: &BuildOptions) -> Asset<'static> {
     build(mesh, options, &|_| ()).expect("a sound mesh").asset
 }
 
-fn vps(mesh: &Mesh, points: u32, ground: VpsGround) -> Prepared {
+/// A bunny with so many points as a shell.
+fn shell(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
+    Arc::new(asset(mesh, &bunny_options(PointCount::About(points))))
+}
+
+fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared {
     let scene = Scene {
         body: mesh,
         ground_extents: GROUND,
     };
-    let assets = |mesh: &Mesh, options: &BuildOptions| Ok(Arc::new(asset(mesh, options)));
+    // The body's is built once for all grounds.
+    let body = bunny_options(PointCount::About(shell.tree.point_count() as u32));
+    let assets = |mesh: &Mesh, options: &BuildOptions| {
+        Ok(if *options == body {
+            shell.clone()
+        } else {
+            Arc::new(asset(mesh, options))
+        })
+    };
     let vps = Vps {
-        body: bunny_options(PointCount::About(points)),
+        body: body.clone(),
         ground,
         sampling: Sampling::Trilinear,
         assets: &assets,
@@ -90,8 +104,8 @@ fn vps(mesh: &Mesh, points: u32, ground: VpsGround) -> Prepared {
 
 /// Poses of a bunny that fell on the ground: in ten runs from different starts, five steps one after
 /// the other at 1.5 and at 2.5 seconds, as bodies of the ground's frame.
-fn rolling(mesh: &Mesh) -> Vec<Pose> {
-    let prepared = vps(mesh, COARSE, VpsGround::Cuboid);
+fn rolling(mesh: &Mesh, shell: &Arc<Asset<'static>>) -> Vec<Pose> {
+    let prepared = vps(mesh, shell, VpsGround::Cuboid);
     let mut poses = Vec::new();
     for run in 0..10 {
         let mut world = PhysicsWorld {
@@ -184,7 +198,13 @@ fn time(seconds: f64) -> String {
 }
 
 /// What an engine asks for, of each algorithm.
-fn ground(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
+fn ground(
+    criterion: &mut Criterion,
+    table: &mut Table,
+    bunny: &Mesh,
+    [fine, coarse]: [&Arc<Asset<'static>>; 2],
+    poses: &[Pose],
+) {
     let scene = Scene {
         body: bunny,
         ground_extents: GROUND,
@@ -200,27 +220,27 @@ fn ground(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[P
         (
             "fine_cuboid",
             "VPS 35 596, cuboid",
-            vps(bunny, FINE, VpsGround::Cuboid),
+            vps(bunny, fine, VpsGround::Cuboid),
         ),
         (
             "fine_dense",
             "VPS 35 596, dense voxelmap",
-            vps(bunny, FINE, dense()),
+            vps(bunny, fine, dense()),
         ),
         (
             "fine_sparse",
             "VPS 35 596, sparse voxelmap",
-            vps(bunny, FINE, sparse()),
+            vps(bunny, fine, sparse()),
         ),
         (
             "coarse_cuboid",
             "VPS 799, cuboid",
-            vps(bunny, COARSE, VpsGround::Cuboid),
+            vps(bunny, coarse, VpsGround::Cuboid),
         ),
         (
             "coarse_dense",
             "VPS 799, dense voxelmap",
-            vps(bunny, COARSE, dense()),
+            vps(bunny, coarse, dense()),
         ),
         (
             "hull",
@@ -284,8 +304,7 @@ fn ground(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[P
 }
 
 /// The queries themselves.
-fn core(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
-    let shell = asset(bunny, &bunny_options(PointCount::About(FINE)));
+fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: &[Pose]) {
     let tree = &shell.tree;
     let maps = [Density::Dense, Density::Sparse].map(|density| {
         let ground = Mesh::cuboid(GROUND).expect("a box");
@@ -450,12 +469,13 @@ fn listed<F: DistanceField, W: vps_core::CountWork>(
 }
 
 /// Two fine bunnies, one ear in the other.
-fn interlocked(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh) {
-    let shape: SharedShape = VpsShape::new(Arc::new(asset(
-        bunny,
-        &bunny_options(PointCount::About(FINE)),
-    )))
-    .into();
+fn interlocked(
+    criterion: &mut Criterion,
+    table: &mut Table,
+    bunny: &Mesh,
+    shell: &Arc<Asset<'static>>,
+) {
+    let shape: SharedShape = VpsShape::new(shell.clone()).into();
     let vertices: Vec<_> = bunny.vertices().iter().map(|v| v.as_vec3()).collect();
     let mesh = SharedShape::trimesh(vertices, bunny.triangles().to_vec()).expect("triangles");
     // Turned half round and pushed together until some centimetres are shared.

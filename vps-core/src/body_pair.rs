@@ -127,12 +127,12 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
 
     /// The deepest contact, the first body's of equally deep ones.
     pub fn deepest(&self) -> Option<PairContact> {
-        self.deeper_of(|query| query.deepest(), |query| query.deepest())
+        self.deepest_within(self.margin)
     }
 
     /// The closest point if the bodies are apart, otherwise the deepest: see [`Query::closest`].
     pub fn closest(&self) -> Option<PairContact> {
-        self.deeper_of(|query| query.closest(), |query| query.closest())
+        self.deepest_within(f32::INFINITY)
     }
 
     /// Penalty force and torque on the first body about `center`, all in its frame; the second body
@@ -173,14 +173,12 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         }
     }
 
-    fn deeper_of(
-        &self,
-        of_first: impl FnOnce(Query<'_, B>) -> Option<Contact>,
-        of_second: impl FnOnce(Query<'_, A>) -> Option<Contact>,
-    ) -> Option<PairContact> {
+    fn deepest_within(&self, margin: f32) -> Option<PairContact> {
         let (first, second) = self.is_shell();
-        let found_first = first.then(|| of_first(self.first_in_second())).flatten();
-        let found_second = second.then(|| of_second(self.second_in_first())).flatten();
+        let of_first = || self.first_in_second().with_margin(margin).deepest();
+        let of_second = || self.second_in_first().with_margin(margin).deepest();
+        let found_first = first.then(of_first).flatten();
+        let found_second = second.then(of_second).flatten();
         match (found_first, found_second) {
             (Some(a), Some(b)) if b.penetration > a.penetration => Some(self.of_second(&b)),
             (Some(a), _) => Some(self.of_first(&a)),

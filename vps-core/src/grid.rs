@@ -11,6 +11,8 @@ pub struct Grid {
     voxel_size: f32,
     per_metre: f32,
     dims: [u32; 3],
+    /// Kept, since every query asks for it at every point.
+    center_bounds: Aabb,
 }
 
 /// Why a [`Grid`] was refused.
@@ -45,12 +47,22 @@ impl Grid {
         if voxels == 0 || voxels > 1 << 31 {
             return Err(GridError::Dims(dims[0], dims[1], dims[2]));
         }
-        Ok(Self {
+        let mut grid = Self {
             origin,
             voxel_size,
             per_metre: voxel_size.recip(),
             dims,
-        })
+            center_bounds: Aabb {
+                min: origin,
+                max: origin,
+            },
+        };
+        let (bounds, half) = (grid.bounds(), Vec3::splat(0.5 * voxel_size));
+        grid.center_bounds = Aabb {
+            min: bounds.min + half,
+            max: bounds.max - half,
+        };
+        Ok(grid)
     }
 
     /// The lowest corner of the grid, in metres in the field frame.
@@ -118,12 +130,7 @@ impl Grid {
     /// The box between the outermost voxel centres, half a voxel smaller than the grid.
     #[inline]
     pub(crate) fn center_bounds(&self) -> Aabb {
-        let bounds = self.bounds();
-        let half = Vec3::splat(0.5 * self.voxel_size);
-        Aabb {
-            min: bounds.min + half,
-            max: bounds.max - half,
-        }
+        self.center_bounds
     }
 
     /// The lowest of the eight voxels whose centres surround each point, and how far the point lies

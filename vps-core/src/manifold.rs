@@ -3,7 +3,6 @@ use wide::f32x4;
 
 use crate::dispatch::dispatch;
 use crate::lanes::{LANES, Vectors};
-use crate::query::TOP;
 use crate::search::Goal;
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Points, Query};
@@ -94,13 +93,9 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
     ///
     /// One search finds the deepest contact and those that count enough; should they be more than
-    /// 256, each further contact is searched for by itself.
+    /// 512, each further contact is searched for by itself.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
-        let mut near = Near::new(self.margin);
-        dispatch(
-            #[inline(always)]
-            || self.search(1, TOP, &mut near),
-        );
+        let near = self.find(Near::new(self.margin));
         ContactManifold::pick(
             || near.deepest,
             |deepest| {
@@ -120,16 +115,12 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                     found: None,
                 };
                 if near.is_full {
-                    dispatch(
-                        #[inline(always)]
-                        || self.search(1, TOP, &mut spread),
-                    );
-                } else {
-                    dispatch(
-                        #[inline(always)]
-                        || near.offer_to(self.tree, &mut spread),
-                    );
+                    return self.find(spread).found;
                 }
+                dispatch(
+                    #[inline(always)]
+                    || near.offer_to(self.tree, &mut spread),
+                );
                 spread.found
             },
         )
@@ -230,7 +221,7 @@ impl Goal for Near {
         if contact.penetration < self.least {
             return true;
         }
-        if self.deepest.as_ref().is_none_or(|d| contact.is_deeper(d)) {
+        if contact.is_deeper_than(self.deepest.as_ref()) {
             self.deepest = Some(contact);
             self.least = if self.is_full {
                 contact.penetration
@@ -297,6 +288,8 @@ struct Polygon<const N: usize> {
     /// For each corner the outward direction in the plane of the polygon from the edge to the next
     /// one, as long as that edge.
     outward: [Vec3; N],
+    /// And how long that is, in metres.
+    edge: [f32; N],
     len: usize,
     along: Vec3,
     /// How far outside of the solid a contact counts half, in metres.
@@ -310,6 +303,7 @@ impl<const N: usize> Polygon<N> {
         Self {
             corners: [first.position; N],
             outward: [Vec3::ZERO; N],
+            edge: [0.0; N],
             len: 1,
             along,
             half: half_weight(margin),
@@ -360,7 +354,7 @@ impl<const N: usize> Polygon<N> {
         }
         let mut most = f32x4::ZERO;
         for edge in 0..self.len {
-            let gain = self.beyond(edge, points) + reach * self.outward[edge].length();
+            let gain = self.beyond(edge, points) + reach * self.edge[edge];
             most = most.fast_max(gain);
         }
         most
@@ -391,6 +385,7 @@ impl<const N: usize> Polygon<N> {
             // With two corners there is an edge each way.
             let to_next = self.corners[(edge + 1) % self.len] - self.corners[edge];
             self.outward[edge] = to_next.cross(self.along);
+            self.edge[edge] = self.outward[edge].length();
         }
     }
 }

@@ -20,11 +20,14 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether it comes before another as the deepest: the first of equally deep ones does.
+    /// Whether it comes before another, if there is one, as the deepest: the first of equally deep
+    /// ones does.
     #[inline]
-    pub(crate) fn is_deeper(&self, other: &Self) -> bool {
-        self.penetration > other.penetration
-            || self.penetration == other.penetration && self.point < other.point
+    pub(crate) fn is_deeper_than(&self, other: Option<&Self>) -> bool {
+        other.is_none_or(|other| {
+            self.penetration > other.penetration
+                || self.penetration == other.penetration && self.point < other.point
+        })
     }
 }
 
@@ -99,16 +102,15 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Algorithm 1, with two differences that change no result: the tree is walked depth first
     /// (which needs no queue), and a parent point is tested once, with the leaf it belongs to.
     pub fn for_each_contact(&self, visit: impl FnMut(Contact)) {
-        let mut all = All::new(self.margin, visit);
-        dispatch(
-            #[inline(always)]
-            || self.search(1, TOP, &mut all),
-        );
+        self.find(All::new(self.margin, visit));
     }
 
     /// Calls `visit` with every contact, testing every point (MPT99): what the tree is measured
     /// against.
     pub fn for_each_contact_flat(&self, visit: impl FnMut(Contact)) {
+        if !self.is_posed {
+            return;
+        }
         let mut all = All::new(self.margin, visit);
         let range = (0, self.tree.point_count() as u32);
         dispatch(
@@ -119,27 +121,18 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 
     /// Whether there is any contact; stops at the first.
     pub fn touches(&self) -> bool {
-        let mut any = Any {
+        let any = Any {
             margin: self.margin,
             found: false,
         };
-        dispatch(
-            #[inline(always)]
-            || self.search(1, TOP, &mut any),
-        );
-        any.found
+        self.find(any).found
     }
 
     /// The contact with the largest penetration δ, the first of equally deep ones.
     ///
     /// Branch and bound: clusters that cannot hold a deeper point are left out.
     pub fn deepest(&self) -> Option<Contact> {
-        let mut deepest = Deepest::new(self.margin);
-        dispatch(
-            #[inline(always)]
-            || self.search(1, TOP, &mut deepest),
-        );
-        deepest.found
+        self.find(Deepest::new(self.margin)).found
     }
 
     /// The point of the shell with the largest penetration, however far outside: where the bodies
@@ -151,6 +144,16 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         W: Copy,
     {
         self.with_margin(f32::INFINITY).deepest()
+    }
+
+    /// Searches the whole tree for a goal, and gives what became of it.
+    #[inline(always)]
+    pub(crate) fn find<G: Goal>(&self, mut goal: G) -> G {
+        dispatch(
+            #[inline(always)]
+            || self.search(1, TOP, &mut goal),
+        );
+        goal
     }
 
     /// A single point, if it is in contact.
@@ -171,26 +174,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 /// The clusters of level 1.
 pub(crate) const TOP: (u32, u32) = (0, 1);
 
-/// Everything within the margin, in order.
-pub(crate) struct Every {
-    pub(crate) margin: f32,
-}
-
-impl Goal for Every {
-    const BEST_FIRST: bool = false;
-
-    #[inline(always)]
-    fn least(&self) -> f32 {
-        -self.margin
-    }
-
-    #[inline(always)]
-    fn offer(&mut self, _contact: Contact) -> bool {
-        true
-    }
-}
-
-/// All contacts.
+/// All contacts, in order.
 pub(crate) struct All<V> {
     margin: f32,
     visit: V,
@@ -263,7 +247,7 @@ impl Goal for Deepest {
 
     #[inline(always)]
     fn offer(&mut self, contact: Contact) -> bool {
-        if self.found.as_ref().is_none_or(|f| contact.is_deeper(f)) {
+        if contact.is_deeper_than(self.found.as_ref()) {
             self.least = contact.penetration;
             self.found = Some(contact);
         }

@@ -43,14 +43,6 @@ impl LocalPenetration<'_> {
     }
 }
 
-impl Linear<'_> {
-    /// Edge length s of a voxel in metres.
-    #[inline]
-    pub fn voxel_size(&self) -> f32 {
-        self.0.grid().voxel_size()
-    }
-}
-
 impl DistanceField for LocalPenetration<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, normal: Vec3) -> f32 {
@@ -147,11 +139,16 @@ fn bound_by_voxel(map: &Voxelmap<'_>, center: Vec3, radius: f32, voxels_off: f32
     // The exact penetration changes by no more than the way from the voxel's centre; and no point
     // of the solid is closer than its box.
     let by_voxel = stored + error + center.distance(grid.center(voxel));
-    let by_box = -map.solid().distance_outside(center);
+    let outside = map.solid().distance_outside(center);
     // At the border four times the error of a value is in the sum of eq. 5, and those of its
     // neighbours may be as far from it as three diagonals.
     let reach = 3.0 * SQRT_3 * grid.voxel_size() + 4.0 * accuracy.far_m;
-    let at_most = by_voxel.min(if by_box < 0.0 { by_box } else { by_voxel }) + radius;
+    let at_center = if outside > 0.0 {
+        by_voxel.min(-outside)
+    } else {
+        by_voxel
+    };
+    let at_most = at_center + radius;
     let exact = f32x4::splat(at_most + voxels_off * grid.voxel_size());
     Stored::new(accuracy, reach)
         .of(exact, f32x4::splat(4.0))
@@ -286,12 +283,11 @@ impl Trilinear<'_> {
             + (voxels * 1.5 + SQRT_3) * voxels * f32x4::new(bends);
         out = bent.fast_min(out);
 
-        if sampled.outside.simd_gt(f32x4::ZERO).any() {
+        let is_outside = sampled.outside.simd_gt(f32x4::ZERO);
+        if is_outside.any() {
             // No point of the solid is closer than its box.
             let to_box = centers.minus(centers.clamped(&map.solid())).length();
-            let off = HALF_DIAGONAL * s;
-            let by_box = bound.of(radii - to_box + off, f32x4::ONE);
-            let is_outside = sampled.outside.simd_gt(f32x4::ZERO);
+            let by_box = bound.of(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
             out = is_outside.select(by_box.fast_min(out), out);
         }
         out
@@ -321,7 +317,7 @@ impl DistanceField for Trilinear<'_> {
         (sampled.values - sampled.outside).to_array()[0]
     }
 
-    /// The gradient of the interpolated field, of eight values around the point.
+    /// By differences of the interpolated field over a voxel on each side.
     #[inline]
     fn inward_direction(&self, point: Vec3) -> Vec3 {
         let map = self.0;

@@ -193,12 +193,9 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         (discs, self.field.penetration_bounds(&in_field))
     }
 
-    /// Tests points one after the other. False ends the search.
+    /// Tests points one after the other; the pose must be finite. False ends the search.
     #[inline(always)]
     pub(crate) fn offer_points<G: Goal>(&self, (first, end): (u32, u32), goal: &mut G) -> bool {
-        if !self.is_posed {
-            return false;
-        }
         let (points, normals) = (self.tree.points(), self.tree.normals());
         self.work.points(end - first);
         let mut next = first as usize;

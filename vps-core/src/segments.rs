@@ -1,5 +1,5 @@
 use crate::dispatch::dispatch;
-use crate::query::{Deepest, Every, TOP};
+use crate::query::{All, Deepest, TOP};
 use crate::work::CountWork;
 use crate::{Contact, DistanceField, Query};
 
@@ -12,9 +12,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// below the leaves is taken as that of the leaves.
     pub fn for_each_segment(&self, level: u32, mut visit: impl FnMut(u32, Contact)) {
         let level = level.clamp(1, self.tree.level_count());
-        let mut every = Every {
-            margin: self.margin,
-        };
+        let mut every = All::new(self.margin, |_| ());
         dispatch(
             #[inline(always)]
             || {

@@ -125,7 +125,7 @@ pub fn cell_dims(dims: [u32; 3]) -> [u32; 3] {
 }
 
 /// Saturates: no store has as many values.
-fn product(dims: [u32; 3]) -> usize {
+pub(crate) fn product(dims: [u32; 3]) -> usize {
     dims.iter()
         .fold(1, |count: usize, &n| count.saturating_mul(n as usize))
 }
@@ -414,20 +414,22 @@ impl<T: Value> Reader<'_, T> {
         ];
         let last = CELL as usize - 1;
         let crosses = [local[0] == last, local[1] == last, local[2] == last];
+        let in_cell = !(crosses[0] | crosses[1] | crosses[2]);
         let refined = parts.refined(cell);
-        if !(crosses[0] | crosses[1] | crosses[2]) {
-            let Some(number) = refined else {
+        match refined {
+            // Behind a face lie values of the lattice, up to which this cell reaches.
+            None if in_cell || parts.none_refined(cell, crosses) => {
                 return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
-            };
-            if let Some(rows) = self.all_stored(parts, number, local) {
-                return Around::Rows(rows);
             }
-            if let Some(octant) = self.octant_alone(parts, number, local) {
-                return octant;
+            Some(number) if in_cell => {
+                if let Some(rows) = self.all_stored(parts, number, local) {
+                    return Around::Rows(rows);
+                }
+                if let Some(octant) = self.octant_alone(parts, number, local) {
+                    return octant;
+                }
             }
-        } else if refined.is_none() && parts.none_refined(cell, crosses) {
-            // Behind the face lie values of the lattice, up to which this cell reaches.
-            return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
+            _ => {}
         }
         self.one_by_one(parts, cell, refined, local, crosses)
     }
@@ -459,13 +461,13 @@ impl<T: Value> Reader<'_, T> {
         };
         for i in 0..8 {
             let (its_cell, its_local) = neighbour(i);
-            // The last axis along which a face lies between, if any.
-            let crossed = (0..3).rev().find(|&a| i >> a & 1 == 1 && crosses[a]);
-            let stepped = (0..3).rev().find(|&a| i >> a & 1 == 1);
-            if let Some(last) = stepped {
-                numbers[i] = match crossed {
-                    Some(axis) if axis == last => parts.refined(its_cell),
-                    _ => numbers[i & !(1 << last)],
+            // The cell of the neighbour one step back along the last axis, unless a face lies
+            // between.
+            if let Some(last) = (0..3).rev().find(|&a| i >> a & 1 == 1) {
+                numbers[i] = if crosses[last] {
+                    parts.refined(its_cell)
+                } else {
+                    numbers[i & !(1 << last)]
                 };
             }
             let brick = numbers[i].and_then(|n| parts.brick(n, its_local));

@@ -1,7 +1,7 @@
 use glamx::Vec3;
 
 use crate::dispatch::dispatch;
-use crate::query::{All, Every, TOP};
+use crate::query::{All, TOP};
 use crate::work::CountWork;
 use crate::{Contact, DistanceField, Query, Weight, Wrench};
 
@@ -42,15 +42,13 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             is_complete: false,
         };
         let mut tested = 0;
-        let mut every = Every {
-            margin: self.margin,
-        };
+        let mut every = All::new(self.margin, |_| ());
         for level in 1..=self.tree.level_count() {
             let clusters = self.tree.level(level);
             let mut pass = Pass::default();
             let mut bound = -self.margin;
             let mut stopped = false;
-            let mut test = |cluster: u32, its_bound: f32, _: &mut Every| {
+            let mut test = |cluster: u32, its_bound: f32, _: &mut _| {
                 if !go_on(tested) {
                     stopped = true;
                     return false;
@@ -83,7 +81,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         let leaves = self.tree.level(leaf_level);
         let mut pass = Pass::default();
         let mut stopped = false;
-        let mut test = |leaf: u32, _: f32, _: &mut Every| {
+        let mut test = |leaf: u32, _: f32, _: &mut _| {
             if !go_on(tested) {
                 stopped = true;
                 return false;
@@ -120,7 +118,7 @@ struct Pass {
 impl Pass {
     fn add(&mut self, contact: &Contact, area: f32, center: Vec3, deepest: &mut Option<Contact>) {
         self.wrench.add(contact, Weight::Area.of(area), center);
-        if deepest.as_ref().is_none_or(|d| contact.is_deeper(d)) {
+        if contact.is_deeper_than(deepest.as_ref()) {
             *deepest = Some(*contact);
         }
     }

@@ -1,5 +1,5 @@
 use crate::sampling::{Linear, LocalPenetration, Trilinear};
-use crate::store::CELL;
+use crate::store::{CELL, product};
 use crate::{Aabb, Grid, Storage, Store};
 
 /// How far the values of a [`Voxelmap`] may be from the exact penetration of the voxel centres in
@@ -110,7 +110,7 @@ impl<'a> Voxelmap<'a> {
                 grid: grid.dims(),
             });
         }
-        let cells = store.cell_dims().iter().fold(1, |n, &c| n * c as usize);
+        let cells = product(store.cell_dims());
         if !bends.is_empty() && bends.len() != cells {
             return Err(VoxelmapError::Bends {
                 bends: bends.len(),
