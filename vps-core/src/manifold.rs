@@ -10,7 +10,8 @@ use crate::{Contact, Discs, DistanceField, PointSphereTree, Points, Query};
 /// At which fraction of the margin outside of the solid a contact counts half.
 const CLOSE: f32 = 0.01;
 
-/// Contacts that count less than this part of what the deepest does are not picked.
+/// Contacts that count less than this part of what the deepest does are picked only when no others
+/// are left.
 const LEAST_WEIGHT: f32 = 1.0 / 4.0;
 
 /// At most `N` contacts that stand for a contact set: the deepest one first, then those that
@@ -19,8 +20,8 @@ const LEAST_WEIGHT: f32 = 1.0 / 4.0;
 /// What a point adds to the area counts less the further outside of the solid it is, half at a
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than a quarter of what the deepest does are left out. Of equally good contacts the first is
-/// taken.
+/// than a quarter of what the deepest does only fill up what places the others leave. Of equally
+/// good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
@@ -68,7 +69,12 @@ impl<const N: usize> ContactManifold<N> {
         let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
         manifold.push(deepest);
         while manifold.len < N {
-            let Some(next) = next(&polygon) else {
+            let mut picked = next(&polygon);
+            if picked.is_none() && polygon.least > -margin {
+                polygon.least = -margin;
+                picked = next(&polygon);
+            }
+            let Some(next) = picked else {
                 break;
             };
             polygon.insert(next.position);
@@ -93,7 +99,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
     ///
     /// One search finds the deepest contact and those that count enough; should they be more than
-    /// 512, each further contact is searched for by itself.
+    /// 512, or too few, each further contact is searched for by itself.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
         let near = self.find(Near::new(self.margin));
         ContactManifold::pick(
@@ -114,7 +120,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                     least: f32::MIN_POSITIVE,
                     found: None,
                 };
-                if near.is_full {
+                if near.is_full || polygon.least < near.least {
                     return self.find(spread).found;
                 }
                 dispatch(
@@ -451,9 +457,12 @@ mod tests {
         assert_eq!(picked::<2>(&contacts), [0, 1]);
         contacts.remove(1);
         assert_eq!(picked::<2>(&contacts), [0, 2]);
-        // Where it counts too little.
+        // Where it counts too little, unless nothing else is left.
         contacts[1].penetration = -0.05;
-        assert_eq!(picked::<2>(&contacts), [0]);
+        assert_eq!(picked::<2>(&contacts), [0, 2]);
+        contacts.push(contact(3, 0.0, 0.001, 0.0));
+        assert_eq!(picked::<2>(&contacts), [0, 3]);
+        assert_eq!(picked::<3>(&contacts), [0, 3, 2]);
     }
 
     #[test]
