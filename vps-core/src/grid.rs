@@ -1,8 +1,8 @@
 use glamx::Vec3;
-use wide::{f32x4, i32x4};
+use wide::f32x4;
 
 use crate::Aabb;
-use crate::lanes::{LANES, Vectors};
+use crate::lanes::{Vectors, Voxels};
 
 /// A regular grid of cubical voxels (section 2.1.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub enum GridError {
     #[error("the origin of the grid is not finite: {0}")]
     Origin(Vec3),
     /// The grid has no voxel, or more than can be numbered.
-    #[error("{0} x {1} x {2} voxels are none, or more than 2^31 in all")]
+    #[error("{0} x {1} x {2} voxels are none, or more than 2^31 in all or 2^23 along an axis")]
     Dims(u32, u32, u32),
 }
 
@@ -35,7 +35,8 @@ impl Grid {
     ///
     /// # Errors
     /// When the voxel size is not positive, the origin not finite, or the grid empty or larger
-    /// than 2^31 voxels.
+    /// than 2^31 voxels, or than 2^23 along an axis, beyond which places between them are lost to
+    /// rounding.
     pub fn new(origin: Vec3, voxel_size: f32, dims: [u32; 3]) -> Result<Self, GridError> {
         if !(voxel_size > 0.0 && voxel_size.is_finite()) {
             return Err(GridError::VoxelSize(voxel_size));
@@ -44,7 +45,7 @@ impl Grid {
             return Err(GridError::Origin(origin));
         }
         let voxels: u128 = dims.iter().map(|&n| u128::from(n)).product();
-        if voxels == 0 || voxels > 1 << 31 {
+        if voxels == 0 || voxels > 1 << 31 || dims.iter().any(|&n| n > 1 << 23) {
             return Err(GridError::Dims(dims[0], dims[1], dims[2]));
         }
         let mut grid = Self {
@@ -137,23 +138,16 @@ impl Grid {
     /// between their centres along each axis, from 0 to 1. The points must lie in
     /// [`center_bounds`](Self::center_bounds), and there must be two voxels along each axis.
     #[inline(always)]
-    pub(crate) fn cells_at(&self, points: Vectors) -> ([[u32; 3]; LANES], Vectors) {
+    pub(crate) fn cells_at(&self, points: Vectors) -> (Voxels, Vectors) {
         let axis = |axis: usize, coordinates: f32x4| {
-            let last = self.dims[axis].saturating_sub(2) as i32;
+            let last = self.dims[axis].saturating_sub(2) as f32;
             let at = (coordinates - self.origin[axis]) * self.per_metre - 0.5;
-            // No index leaves the grid, whatever is no number becomes.
-            let corner = at
-                .fast_trunc_int()
-                .max(i32x4::splat(0))
-                .min(i32x4::splat(last));
-            (corner.to_array(), at - corner.round_float())
+            // From -0.5 on, and so from voxel 0 on.
+            let corner = at.fast_min(f32x4::splat(last)).fast_trunc_int();
+            (corner, at - corner.round_float())
         };
         let ((x, u), (y, v), (z, w)) = (axis(0, points.x), axis(1, points.y), axis(2, points.z));
-        let mut corners = [[0; 3]; LANES];
-        for lane in 0..LANES {
-            corners[lane] = [x[lane] as u32, y[lane] as u32, z[lane] as u32];
-        }
-        (corners, Vectors { x: u, y: v, z: w })
+        (Voxels { x, y, z }, Vectors { x: u, y: v, z: w })
     }
 
     /// Casting saturates, so a NaN becomes voxel 0 and no index leaves the grid.
@@ -200,5 +194,6 @@ mod tests {
         assert!(Grid::new(Vec3::NAN, 1.0, [1, 1, 1]).is_err());
         assert!(Grid::new(Vec3::ZERO, 1.0, [1, 0, 1]).is_err());
         assert!(Grid::new(Vec3::ZERO, 1.0, [u32::MAX; 3]).is_err());
+        assert!(Grid::new(Vec3::ZERO, 1.0, [1 << 24, 2, 2]).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Several points at a time, as the registers of a processor take them.
 
 use glamx::{Mat3, Vec3};
-use wide::f32x4;
+use wide::{f32x4, i32x4};
 
 use crate::Aabb;
 
@@ -44,18 +44,23 @@ impl Points {
         }
     }
 
-    /// The first of `points`; should there be fewer than lanes, the last is repeated.
+    /// Those of `points` from position `first` on; should there be fewer than lanes, the last is
+    /// repeated.
     ///
     /// # Panics
     /// If there is none.
     #[inline(always)]
-    pub fn padded(points: &[[f32; 3]]) -> Self {
-        let mut lanes = Self::default();
-        for lane in 0..LANES {
-            let point = points[lane.min(points.len() - 1)];
-            (lanes.x[lane], lanes.y[lane], lanes.z[lane]) = (point[0], point[1], point[2]);
+    pub fn read(points: &[[f32; 3]], first: usize) -> Self {
+        let points = &points[first..];
+        let [a, b, c, d] = match points.first_chunk() {
+            Some(&four) => four,
+            None => padded(points),
+        };
+        Self {
+            x: [a[0], b[0], c[0], d[0]],
+            y: [a[1], b[1], c[1], d[1]],
+            z: [a[2], b[2], c[2], d[2]],
         }
-        lanes
     }
 
     #[inline(always)]
@@ -68,6 +73,13 @@ impl Points {
     pub fn get(&self, lane: usize) -> Vec3 {
         Vec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
+}
+
+#[cold]
+fn padded(points: &[[f32; 3]]) -> [[f32; 3]; LANES] {
+    let mut all = [points[points.len() - 1]; LANES];
+    all[..points.len()].copy_from_slice(points);
+    all
 }
 
 /// Vectors in registers.
@@ -96,6 +108,17 @@ impl Vectors {
     #[inline(always)]
     pub(crate) fn length(self) -> f32x4 {
         self.dot(self).sqrt()
+    }
+
+    /// The same, at little cost if all are zero.
+    #[inline(always)]
+    pub(crate) fn length_if_any(self) -> f32x4 {
+        let square = self.dot(self);
+        if square.simd_gt(f32x4::ZERO).any() {
+            square.sqrt()
+        } else {
+            f32x4::ZERO
+        }
     }
 
     #[inline(always)]
@@ -216,6 +239,46 @@ impl From<Vectors> for Points {
     }
 }
 
+/// Positions of voxels in a grid, in registers.
+#[derive(Clone, Copy)]
+pub(crate) struct Voxels {
+    pub(crate) x: i32x4,
+    pub(crate) y: i32x4,
+    pub(crate) z: i32x4,
+}
+
+impl Voxels {
+    /// Positions in an array of `dims` values, x fastest, then y, then z.
+    #[inline(always)]
+    pub(crate) fn linear(self, dims: [u32; 3]) -> [u32; LANES] {
+        let [nx, ny] = [dims[0] as i32, dims[1] as i32];
+        let (x, y, z): ([i32; LANES], [i32; LANES], [i32; LANES]) =
+            (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        let mut linear = [0; LANES];
+        for lane in 0..LANES {
+            let row = z[lane].wrapping_mul(ny).wrapping_add(y[lane]);
+            linear[lane] = row.wrapping_mul(nx).wrapping_add(x[lane]) as u32;
+        }
+        linear
+    }
+
+    /// The blocks of `1 << bits` voxels along each axis they lie in.
+    #[inline(always)]
+    pub(crate) fn blocks(self, bits: i32) -> Self {
+        Self {
+            x: self.x >> bits,
+            y: self.y >> bits,
+            z: self.z >> bits,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(self, lane: usize) -> [u32; 3] {
+        let at = |axis: i32x4| axis.to_array()[lane] as u32;
+        [at(self.x), at(self.y), at(self.z)]
+    }
+}
+
 impl Discs {
     /// As thick as they are wide.
     #[inline(always)]
@@ -233,15 +296,8 @@ impl Discs {
     #[inline(always)]
     pub(crate) fn rise(&self, gradients: Vectors) -> f32x4 {
         let normals = Vectors::from(self.normals);
-        let radii = f32x4::new(self.radii);
         let across = gradients.dot(normals);
         let along = gradients.minus(normals.times(across)).length();
-        let across = across.abs();
-        // Straight up the gradient as far as the disc is thick, then on along its face.
-        let straight =
-            radii * across / gradients.length().fast_max(f32x4::splat(f32::MIN_POSITIVE));
-        let up = straight.fast_min(f32x4::new(self.thickness));
-        let aside = (radii * radii - up * up).fast_max(f32x4::ZERO).sqrt();
-        across * up + along * aside
+        across.abs() * f32x4::new(self.thickness) + along * f32x4::new(self.radii)
     }
 }

@@ -3,6 +3,7 @@ use wide::f32x4;
 
 use crate::dispatch::dispatch;
 use crate::lanes::{LANES, Vectors};
+use crate::query::TOP;
 use crate::search::Goal;
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Points, Query};
@@ -12,7 +13,7 @@ const CLOSE: f32 = 0.01;
 
 /// Contacts that count less than this part of what the deepest does are picked only when no others
 /// are left.
-const LEAST_WEIGHT: f32 = 1.0 / 4.0;
+const LEAST_WEIGHT: f32 = 1.0 / 2.0;
 
 /// At most `N` contacts that stand for a contact set: the deepest one first, then those that
 /// spread the manifold over the largest area (section 3.2).
@@ -20,7 +21,7 @@ const LEAST_WEIGHT: f32 = 1.0 / 4.0;
 /// What a point adds to the area counts less the further outside of the solid it is, half at a
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than a quarter of what the deepest does only fill up what places the others leave. Of equally
+/// than half of what the deepest does only fill up what places the others leave. Of equally
 /// good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
@@ -101,7 +102,11 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// One search finds the deepest contact and those that count enough; should they be more than
     /// 512, or too few, each further contact is searched for by itself.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
-        let near = self.find(Near::new(self.margin));
+        let mut near = Near::new(self.margin);
+        dispatch(
+            #[inline(always)]
+            || self.search(1, TOP, &mut near),
+        );
         ContactManifold::pick(
             || near.deepest,
             |deepest| {
@@ -223,7 +228,13 @@ impl Goal for Near {
     }
 
     #[inline(always)]
+    fn least_penetration(&self) -> f32 {
+        self.least
+    }
+
+    #[inline(always)]
     fn offer(&mut self, contact: Contact) -> bool {
+        // What was found deeper in the same batch may have left it behind.
         if contact.penetration < self.least {
             return true;
         }
@@ -270,6 +281,11 @@ impl<const N: usize> Goal for Spread<'_, N> {
     #[inline(always)]
     fn least(&self) -> f32 {
         self.least
+    }
+
+    #[inline(always)]
+    fn least_penetration(&self) -> f32 {
+        self.polygon.least
     }
 
     #[inline(always)]

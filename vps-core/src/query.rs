@@ -195,6 +195,11 @@ impl<V: FnMut(Contact)> Goal for All<V> {
     }
 
     #[inline(always)]
+    fn least_penetration(&self) -> f32 {
+        -self.margin
+    }
+
+    #[inline(always)]
     fn offer(&mut self, contact: Contact) -> bool {
         (self.visit)(contact);
         true
@@ -212,6 +217,11 @@ impl Goal for Any {
 
     #[inline(always)]
     fn least(&self) -> f32 {
+        -self.margin
+    }
+
+    #[inline(always)]
+    fn least_penetration(&self) -> f32 {
         -self.margin
     }
 
@@ -242,6 +252,11 @@ impl Goal for Deepest {
 
     #[inline(always)]
     fn least(&self) -> f32 {
+        self.least
+    }
+
+    #[inline(always)]
+    fn least_penetration(&self) -> f32 {
         self.least
     }
 

@@ -3,7 +3,7 @@
 use glamx::Vec3;
 use wide::f32x4;
 
-use crate::lanes::Vectors;
+use crate::lanes::{Vectors, Voxels};
 use crate::{Aabb, Accuracy, Discs, DistanceField, LANES, Points, Voxelmap};
 
 /// Half the diagonal of a voxel, in voxels.
@@ -218,19 +218,19 @@ impl Trilinear<'_> {
         self.error_bound() + beyond + 2.0 * way
     }
 
-    /// What is interpolated at the points of so many lanes.
+    /// What is interpolated at the points.
     #[inline(always)]
-    fn sampled(&self, points: Vectors, lanes: usize) -> Sampled {
+    fn sampled(&self, points: Vectors) -> Sampled {
         let (grid, store) = (self.0.grid(), self.0.store());
         let inside = points.clamped(&grid.center_bounds());
         let (corners, between) = grid.cells_at(inside);
-        let (values, slopes) = store.interpolated(corners, between, lanes);
+        let (values, slopes) = store.interpolated(corners, between);
         let sigma = f32x4::splat(self.0.sigma());
         Sampled {
             values: values * sigma,
             gradients: slopes.times(sigma * grid.per_metre()),
             corners,
-            outside: points.minus(inside).length(),
+            outside: points.minus(inside).length_if_any(),
         }
     }
 
@@ -250,12 +250,12 @@ impl Trilinear<'_> {
     /// an axis; between faces it changes by the twist of the squares. Together the point has no
     /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends.
     #[inline(always)]
-    fn bounds_of_discs(&self, discs: &Discs, lanes: usize) -> f32x4 {
+    fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
         let (s, accuracy) = (map.grid().voxel_size(), map.accuracy());
         let centers = Vectors::from(discs.centers);
         let radii = f32x4::new(discs.radii);
-        let sampled = self.sampled(centers, lanes);
+        let sampled = self.sampled(centers);
         let at_center = sampled.values;
 
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
@@ -270,18 +270,10 @@ impl Trilinear<'_> {
         let voxels = radii * map.grid().per_metre();
         let room = centers.room_in(&map.grid().center_bounds());
         let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS)) & room.simd_ge(radii);
-        let mut bends = [f32::INFINITY; LANES];
-        let near = is_near.to_bitmask();
-        for (lane, bend) in bends[..lanes].iter_mut().enumerate() {
-            if near >> lane & 1 == 1 {
-                *bend = map.bend(sampled.corners[lane]);
-            }
-        }
-        // Not below where the bend is not known: there it is infinite.
         let bent = at_center
             + discs.rise(sampled.gradients)
-            + (voxels * 1.5 + SQRT_3) * voxels * f32x4::new(bends);
-        out = bent.fast_min(out);
+            + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
+        out = is_near.select(bent.fast_min(out), out);
 
         let is_outside = sampled.outside.simd_gt(f32x4::ZERO);
         if is_outside.any() {
@@ -305,7 +297,7 @@ struct Sampled {
     /// And their gradients, per metre.
     gradients: Vectors,
     /// The lowest of the voxels around.
-    corners: [[u32; 3]; LANES],
+    corners: Voxels,
     /// The way from the box in metres.
     outside: f32x4,
 }
@@ -313,7 +305,7 @@ struct Sampled {
 impl DistanceField for Trilinear<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
-        let sampled = self.sampled(Vectors::splat(point), 1);
+        let sampled = self.sampled(Vectors::splat(point));
         (sampled.values - sampled.outside).to_array()[0]
     }
 
@@ -321,19 +313,24 @@ impl DistanceField for Trilinear<'_> {
     #[inline]
     fn inward_direction(&self, point: Vec3) -> Vec3 {
         let map = self.0;
-        let point = map.grid().bounds().clamp(point);
+        let point = Points::splat(map.grid().bounds().clamp(point));
         let step = map.grid().voxel_size();
-        let slope = |axis: Vec3| {
-            self.penetration(point + axis * step, Vec3::ZERO)
-                - self.penetration(point - axis * step, Vec3::ZERO)
-        };
-        Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or_zero()
+        let (mut after, mut before) = (point, point);
+        after.x[0] += step;
+        after.y[1] += step;
+        after.z[2] += step;
+        before.x[0] -= step;
+        before.y[1] -= step;
+        before.z[2] -= step;
+        let [after, before] = [after, before].map(|p| self.penetrations(&p, &p));
+        let slope = |axis: usize| after[axis] - before[axis];
+        Vec3::new(slope(0), slope(1), slope(2)).normalize_or_zero()
     }
 
     #[inline]
     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32 {
         let ball = Discs::balls(&Points::splat(center), [radius; LANES]);
-        self.bounds_of_discs(&ball, 1).to_array()[0]
+        self.bounds_of_discs(&ball).to_array()[0]
     }
 
     #[inline]
@@ -348,12 +345,12 @@ impl DistanceField for Trilinear<'_> {
 
     #[inline(always)]
     fn penetrations(&self, points: &Points, _normals: &Points) -> [f32; LANES] {
-        let sampled = self.sampled((*points).into(), LANES);
+        let sampled = self.sampled((*points).into());
         (sampled.values - sampled.outside).to_array()
     }
 
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
-        self.bounds_of_discs(discs, LANES).to_array()
+        self.bounds_of_discs(discs).to_array()
     }
 }

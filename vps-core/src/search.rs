@@ -24,7 +24,10 @@ pub(crate) trait Goal {
     /// The score from which on contacts matter; it may rise with what was offered.
     fn least(&self) -> f32;
 
-    /// Takes a contact with a penetration of at least minus the margin. False ends the search.
+    /// The penetration from which on contacts matter.
+    fn least_penetration(&self) -> f32;
+
+    /// Takes a contact with at least that penetration. False ends the search.
     fn offer(&mut self, contact: Contact) -> bool;
 }
 
@@ -48,10 +51,12 @@ impl Frame {
         end: 0,
     };
 
-    fn of(range: (u32, u32)) -> Self {
+    /// Children in a range of the level that starts at a position among all clusters.
+    #[inline(always)]
+    fn of(start: u32, range: (u32, u32)) -> Self {
         Self {
-            next: range.0,
-            end: range.1,
+            next: start + range.0,
+            end: start + range.1,
             ..Self::EMPTY
         }
     }
@@ -60,43 +65,43 @@ impl Frame {
     #[inline(always)]
     fn take(&mut self, best_first: bool, least: f32) -> Option<(u32, f32)> {
         // Above minus infinity, whatever is asked for.
-        let least = least.max(f32::MIN);
-        let lanes = if best_first {
+        let least = f32x4::splat(least).fast_max(f32x4::splat(f32::MIN));
+        let mut lanes = self.bounds.simd_ge(least);
+        if best_first {
             let [a, b, c, d] = self.bounds.to_array();
             let max = |a: f32, b: f32| if a > b { a } else { b };
-            let most = max(max(a, b), max(c, d));
-            if most < least {
-                return None;
-            }
-            self.bounds.simd_eq(f32x4::splat(most))
-        } else {
-            self.bounds.simd_ge(f32x4::splat(least))
-        };
+            let most = f32x4::splat(max(max(a, b), max(c, d)));
+            lanes &= self.bounds.simd_eq(most);
+        }
         let lanes = lanes.to_bitmask();
         if lanes == 0 {
             return None;
         }
         let lane = lanes.trailing_zeros();
-        let bound = &mut self.bounds.as_mut_array()[lane as usize];
-        let taken = (self.first + lane, *bound);
-        *bound = f32::NEG_INFINITY;
-        Some(taken)
+        let bound = self.bounds.to_array()[lane as usize % LANES];
+        // All at once, so that it need not be waited for when it is read again.
+        let taken = NUMBERS.simd_eq(f32x4::splat(lane as f32));
+        self.bounds = taken.select(f32x4::splat(f32::NEG_INFINITY), self.bounds);
+        Some((self.first + lane, bound))
     }
 }
+
+/// Of the lanes.
+const NUMBERS: f32x4 = f32x4::new([0.0, 1.0, 2.0, 3.0]);
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Branch and bound below the clusters `range` of a level. Nothing is left out that has the
     /// least score, so what is best is found whatever the order.
     #[inline(always)]
     pub(crate) fn search<G: Goal>(&self, level: u32, range: (u32, u32), goal: &mut G) {
-        let leaves = self.tree.level_count();
+        let leaves = self.tree.level(self.tree.level_count());
         self.descend(
             (level, range),
-            leaves,
+            self.tree.level_count(),
             goal,
             #[inline(always)]
             |leaf, _, goal| {
-                let leaf = &self.tree.level(leaves)[leaf as usize];
+                let leaf = &leaves[leaf as usize];
                 self.offer_points((leaf.first, leaf.first + leaf.count), goal)
             },
         );
@@ -115,9 +120,10 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         if !self.is_posed {
             return;
         }
+        let (clusters, starts) = (self.tree.clusters(), self.tree.level_starts());
         let (top, bottom) = (level as usize, last as usize);
-        let mut root = Frame::of(range);
-        self.fill(top, &mut root, goal);
+        let mut root = Frame::of(starts[top - 1], range);
+        self.fill(clusters, &mut root, goal);
         // The first look costs little: most bodies of a scene are apart.
         if root.next == root.end && !root.bounds.simd_ge(f32x4::splat(goal.least())).any() {
             return;
@@ -129,7 +135,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             let frame = &mut frames[at];
             let Some((child, bound)) = frame.take(G::BEST_FIRST, goal.least()) else {
                 if frame.next < frame.end {
-                    self.fill(at, frame, goal);
+                    self.fill(clusters, frame, goal);
                 } else if at == top {
                     return;
                 } else {
@@ -138,14 +144,15 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 continue;
             };
             if at == bottom {
-                if !reached(child, bound, goal) {
+                if !reached(child - starts[bottom - 1], bound, goal) {
                     return;
                 }
             } else {
-                let cluster = self.tree.level(at as u32)[child as usize];
+                let cluster = &clusters[child as usize];
+                let range = (cluster.first, cluster.first + cluster.count);
+                let mut frame = Frame::of(starts[at], range);
                 at += 1;
-                let mut frame = Frame::of((cluster.first, cluster.first + cluster.count));
-                self.fill(at, &mut frame, goal);
+                self.fill(clusters, &mut frame, goal);
                 frames[at] = frame;
             }
         }
@@ -153,28 +160,29 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 
     /// Bounds the next children of a frame.
     #[inline(always)]
-    fn fill<G: Goal>(&self, level: usize, frame: &mut Frame, goal: &G) {
+    fn fill<G: Goal>(&self, clusters: &[Cluster], frame: &mut Frame, goal: &G) {
         let count = (frame.end - frame.next).min(LANES as u32);
         self.work.spheres(count);
         frame.first = frame.next;
         frame.next += count;
-        let all = self.tree.level(level as u32);
-        let clusters = &all[frame.first as usize..frame.next as usize];
-        let (discs, penetrations) = self.bounds_of(clusters);
+        let (discs, penetrations) = self.bounds_of(&clusters[frame.first as usize..]);
         let bounds = goal.bounds(&discs, f32x4::new(penetrations));
         // What is no number is below everything, and so are the lanes that are not in use.
-        let counts = f32x4::new([0.0, 1.0, 2.0, 3.0]).simd_lt(f32x4::splat(count as f32))
-            & bounds.simd_eq(bounds);
+        let counts = NUMBERS.simd_lt(f32x4::splat(count as f32)) & bounds.simd_eq(bounds);
         frame.bounds = counts.select(bounds, f32x4::splat(f32::NEG_INFINITY));
     }
 
-    /// The discs of up to [`LANES`] clusters in the shell frame, and bounds of the penetration in
-    /// them.
+    /// The discs of the first [`LANES`] clusters in the shell frame, and bounds of the penetration in
+    /// them. Should there be fewer, the last is repeated.
     #[inline(always)]
     pub(crate) fn bounds_of(&self, clusters: &[Cluster]) -> (Discs, [f32; LANES]) {
-        let last = clusters.len() - 1;
-        let disc = |lane: usize| clusters[lane.min(last)].disc();
-        let (a, b, c, d) = (disc(0), disc(1), disc(2), disc(3));
+        let (a, b, c, d) = match clusters {
+            [a, b, c, d, ..] => (a.disc(), b.disc(), c.disc(), d.disc()),
+            _ => {
+                let disc = |lane: usize| clusters[lane.min(clusters.len() - 1)].disc();
+                (disc(0), disc(1), disc(2), disc(3))
+            }
+        };
         let [x, y, z, radii] = f32x4::transpose([a.0, b.0, c.0, d.0]);
         let centers = Vectors { x, y, z };
         let [x, y, z, thickness] = f32x4::transpose([a.1, b.1, c.1, d.1]);
@@ -198,32 +206,38 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     pub(crate) fn offer_points<G: Goal>(&self, (first, end): (u32, u32), goal: &mut G) -> bool {
         let (points, normals) = (self.tree.points(), self.tree.normals());
         self.work.points(end - first);
-        let mut next = first as usize;
-        let end = end as usize;
+        let mut next = first;
         while next < end {
-            let range = next..end.min(next + LANES);
-            let positions = Points::padded(&points[range.clone()]);
-            let inward = Points::padded(&normals[range.clone()]);
-            let penetrations = self.field.penetrations(
+            let positions = Points::read(points, next as usize);
+            let inward = Points::read(normals, next as usize);
+            let penetrations = f32x4::new(self.field.penetrations(
                 &self.to_field(positions.into()).into(),
                 &Vectors::from(inward).rotated(&self.rotation).into(),
-            );
-            for (lane, index) in range.enumerate() {
-                let penetration = penetrations[lane];
-                if penetration >= -self.margin {
-                    let contact = Contact {
-                        point: index as u32,
-                        position: positions.get(lane),
-                        normal: inward.get(lane),
-                        penetration,
-                    };
-                    if !goal.offer(contact) {
-                        return false;
-                    }
+            ));
+            let matters = penetrations.simd_ge(f32x4::splat(goal.least_penetration()));
+            let mut lanes = matters.to_bitmask() & below(end - next);
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros();
+                lanes &= lanes - 1;
+                let point = next + lane;
+                let contact = Contact {
+                    point,
+                    position: self.tree.point(point as usize),
+                    normal: self.tree.normal(point as usize),
+                    penetration: penetrations.to_array()[lane as usize % LANES],
+                };
+                if !goal.offer(contact) {
+                    return false;
                 }
             }
-            next += LANES;
+            next += LANES as u32;
         }
         true
     }
+}
+
+/// The lowest bits, so many as there are lanes in use.
+#[inline(always)]
+fn below(count: u32) -> u32 {
+    (1 << count.min(LANES as u32)) - 1
 }

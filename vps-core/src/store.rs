@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
 use wide::{f32x4, i32x4};
 
-use crate::lanes::{LANES, Points, Vectors};
+use crate::lanes::{LANES, Points, Vectors, Voxels};
 use crate::{Storage, VoxelmapError};
 
 /// Voxels along the edge of a cell of a sparse [`Store`].
@@ -261,18 +261,12 @@ impl<'a> Store<'a> {
     }
 
     /// What lies between the voxels `corners` and their next neighbours along each axis at `t`,
-    /// between 0 and 1, and how much it grows per voxel there. Only so many lanes are read; the
-    /// others repeat the first.
+    /// between 0 and 1, and how much it grows per voxel there.
     #[inline(always)]
-    pub(crate) fn interpolated(
-        &self,
-        corners: [[u32; 3]; LANES],
-        t: Vectors,
-        lanes: usize,
-    ) -> (f32x4, Vectors) {
+    pub(crate) fn interpolated(&self, corners: Voxels, t: Vectors) -> (f32x4, Vectors) {
         match &self.values {
-            Values::Integers(values) => self.read(values).interpolated(corners, t, lanes),
-            Values::Floats(values) => self.read(values).interpolated(corners, t, lanes),
+            Values::Integers(values) => self.read(values).interpolated(corners, t),
+            Values::Floats(values) => self.read(values).interpolated(corners, t),
         }
     }
 
@@ -340,32 +334,30 @@ impl<T: Value> Reader<'_, T> {
     }
 
     #[inline(always)]
-    fn interpolated(
-        &self,
-        corners: [[u32; 3]; LANES],
-        t: Vectors,
-        lanes: usize,
-    ) -> (f32x4, Vectors) {
-        let mut rows = [[[T::zeroed(); 2]; LANES]; 4];
+    fn interpolated(&self, corners: Voxels, t: Vectors) -> (f32x4, Vectors) {
         match self.layout {
             Layout::Dense => {
-                let offsets = row_offsets(self.dims);
-                for lane in 0..lanes {
-                    let first = linear(self.dims, corners[lane]);
-                    for (row, offset) in rows.iter_mut().zip(offsets) {
-                        row[lane] = self.pair(first + offset);
-                    }
-                }
-                Eight::of(&rows).interpolated(t)
+                let [a, b, c, d] = corners.linear(self.dims).map(|first| first as usize);
+                let [_, y, z, yz] = row_offsets(self.dims).map(|offset| offset as usize);
+                let row = |offset: usize| {
+                    T::unzip([
+                        self.pair(a + offset),
+                        self.pair(b + offset),
+                        self.pair(c + offset),
+                        self.pair(d + offset),
+                    ])
+                };
+                Eight::of([row(0), row(y), row(z), row(yz)]).interpolated(t)
             }
             Layout::Sparse(sparse) => {
                 let parts = sparse.parts();
+                let mut rows = [[T::Pair::zeroed(); LANES]; 4];
                 // Values that lie further apart than voxels, and where between them.
                 let mut between = Points::from(t);
                 let mut per_voxel = [1.0; LANES];
                 let mut mixed: [Option<[f32; 8]>; LANES] = [None; LANES];
-                for lane in 0..lanes {
-                    match self.around(parts, corners[lane]) {
+                for lane in 0..LANES {
+                    match self.around(parts, corners.get(lane)) {
                         Around::Rows(values) => {
                             for (row, values) in rows.iter_mut().zip(values) {
                                 row[lane] = values;
@@ -383,7 +375,8 @@ impl<T: Value> Reader<'_, T> {
                         Around::Mixed(values) => mixed[lane] = Some(values),
                     }
                 }
-                let mut eight = Eight::of(&rows);
+                let [a, b, c, d] = rows;
+                let mut eight = Eight::of([T::unzip(a), T::unzip(b), T::unzip(c), T::unzip(d)]);
                 for (lane, mixed) in mixed.into_iter().enumerate() {
                     if let Some(values) = mixed {
                         eight.set(lane, values);
@@ -397,14 +390,13 @@ impl<T: Value> Reader<'_, T> {
 
     /// Two values next to each other.
     #[inline(always)]
-    fn pair(&self, first: usize) -> [T; 2] {
-        let pair = &self.values[first..first + 2];
-        [pair[0], pair[1]]
+    fn pair(&self, first: usize) -> T::Pair {
+        T::pair(self.values, first)
     }
 
     /// What a sparse store has around the voxel `corner` and its next neighbours.
     #[inline(always)]
-    fn around(&self, parts: Parts<'_>, corner: [u32; 3]) -> Around<T> {
+    fn around(&self, parts: Parts<'_>, corner: [u32; 3]) -> Around<T::Pair> {
         let [x, y, z] = corner;
         let cell = [x / CELL, y / CELL, z / CELL];
         let local = [
@@ -444,7 +436,7 @@ impl<T: Value> Reader<'_, T> {
         refined: Option<usize>,
         local: [usize; 3],
         crosses: [bool; 3],
-    ) -> Around<T> {
+    ) -> Around<T::Pair> {
         // The numbers of the cells, by the faces that lie between.
         let mut numbers = [refined; 8];
         let mut stored = [T::zeroed(); 8];
@@ -478,7 +470,12 @@ impl<T: Value> Reader<'_, T> {
         }
         if all_stored {
             let [a, b, c, d, e, f, g, h] = stored;
-            return Around::Rows([[a, b], [c, d], [e, f], [g, h]]);
+            return Around::Rows([
+                T::pair_of(a, b),
+                T::pair_of(c, d),
+                T::pair_of(e, f),
+                T::pair_of(g, h),
+            ]);
         }
         let mut values = [0.0; 8];
         for (i, value) in values.iter_mut().enumerate() {
@@ -495,11 +492,11 @@ impl<T: Value> Reader<'_, T> {
         parts: Parts<'_>,
         number: usize,
         [x, y, z]: [usize; 3],
-    ) -> Option<[[T; 2]; 4]> {
+    ) -> Option<[T::Pair; 4]> {
         let cell = parts.cells[number];
         // Bricks next to each other along x are so among those stored.
         let pair = 1_u64 << (x / 2) | 1_u64 << x.div_ceil(2);
-        let mut rows = [[T::zeroed(); 2]; 4];
+        let mut rows = [T::Pair::zeroed(); 4];
         for (i, row) in rows.iter_mut().enumerate() {
             let (y, z) = (y + (i & 1), z + (i >> 1));
             let bricks = ((z / 2) * 4 + y / 2) * 4;
@@ -511,7 +508,7 @@ impl<T: Value> Reader<'_, T> {
             let within = first + ((z % 2) * 2 + y % 2) * 2 + x % 2;
             // The next one in this brick, or the first one of the same row in the next.
             let next = if x % 2 == 0 { 1 } else { BRICK_VALUES - 1 };
-            *row = [self.values[within], self.values[within + next]];
+            *row = T::pair_of(self.values[within], self.values[within + next]);
         }
         Some(rows)
     }
@@ -524,7 +521,7 @@ impl<T: Value> Reader<'_, T> {
         parts: Parts<'_>,
         number: usize,
         local: [usize; 3],
-    ) -> Option<Around<T>> {
+    ) -> Option<Around<T::Pair>> {
         let [x, y, z] = local;
         let along = |l: usize| 1_u64 << (l / 2) | 1_u64 << l.div_ceil(2);
         // Spread over rows of 4 bricks, and planes of 16.
@@ -560,18 +557,18 @@ impl<T: Value> Reader<'_, T> {
         let [x, y, z] = local;
         let Some(number) = refined else {
             let t = Vec3::new(x as f32, y as f32, z as f32) / CELL as f32;
-            return lerp_one(self.lattice(parts, cell), t);
+            return lerp_one::<T>(self.lattice(parts, cell), t);
         };
         if let Some(index) = parts.brick(number, local) {
             return self.get(index);
         }
         let t = Vec3::new((x % 4) as f32, (y % 4) as f32, (z % 4) as f32) / 4.0;
-        lerp_one(self.octant(parts, number, [x / 4, y / 4, z / 4]), t)
+        lerp_one::<T>(self.octant(parts, number, [x / 4, y / 4, z / 4]), t)
     }
 
     /// The corners of an octant of a refined cell.
     #[inline(always)]
-    fn octant(&self, parts: Parts<'_>, number: usize, [x, y, z]: [usize; 3]) -> [[T; 2]; 4] {
+    fn octant(&self, parts: Parts<'_>, number: usize, [x, y, z]: [usize; 3]) -> [T::Pair; 4] {
         let first = parts.middles + number * MIDDLE_VALUES + (z * 3 + y) * 3 + x;
         let row = |offset| self.pair(first + offset);
         [row(0), row(3), row(9), row(12)]
@@ -579,40 +576,72 @@ impl<T: Value> Reader<'_, T> {
 
     /// The corners of a cell in the lattice of all cells.
     #[inline(always)]
-    fn lattice(&self, parts: Parts<'_>, cell: [u32; 3]) -> [[T; 2]; 4] {
+    fn lattice(&self, parts: Parts<'_>, cell: [u32; 3]) -> [T::Pair; 4] {
         let [nx, ny, nz] = parts.cell_dims;
         let dims = [nx + 1, ny + 1, nz + 1];
         let first = linear(dims, cell);
         let [a, b, c, d] = row_offsets(dims);
-        let row = |offset| self.pair(first + offset);
+        let row = |offset: u32| self.pair(first + offset as usize);
         [row(a), row(b), row(c), row(d)]
     }
 }
 
 /// What lies around a point of a sparse store, in rows of two values: x fastest, then y, then z.
-enum Around<T> {
+enum Around<P> {
     /// The values of the eight voxels.
-    Rows([[T; 2]; 4]),
+    Rows([P; 4]),
     /// Values further apart; which voxel from the first of them on; and a voxel's part of their
     /// distance.
-    Coarse([[T; 2]; 4], [usize; 3], f32),
+    Coarse([P; 4], [usize; 3], f32),
     /// The values of the eight voxels, of which some are interpolated.
     Mixed([f32; 8]),
 }
 
 /// A number in a [`Store`].
 trait Value: Pod + Into<f32> {
+    /// Two that lie next to each other.
+    type Pair: Pod;
+
+    fn pair(values: &[Self], first: usize) -> Self::Pair;
+
+    fn pair_of(first: Self, second: Self) -> Self::Pair;
+
+    fn of_pair(pair: Self::Pair) -> [f32; 2];
+
     /// The first ones of all pairs, and the second ones.
-    fn unzip(pairs: [[Self; 2]; LANES]) -> [f32x4; 2];
+    fn unzip(pairs: [Self::Pair; LANES]) -> [f32x4; 2];
 }
 
 impl Value for i16 {
+    /// Both at once, as they lie in memory.
+    type Pair = i32;
+
     #[inline(always)]
-    fn unzip(pairs: [[Self; 2]; LANES]) -> [f32x4; 2] {
-        // Both at once, the first one in the lower half.
-        let both = |[a, b]: [i16; 2]| i32::from(b) << 16 | i32::from(a) & 0xffff;
-        let [a, b, c, d] = pairs;
-        let both = i32x4::new([both(a), both(b), both(c), both(d)]);
+    fn pair(values: &[Self], first: usize) -> i32 {
+        let bytes: &[u8] = bytemuck::cast_slice(values);
+        let start = first * size_of::<Self>();
+        let pair = &bytes[start..start + size_of::<i32>()];
+        let both = i32::from_ne_bytes([pair[0], pair[1], pair[2], pair[3]]);
+        if cfg!(target_endian = "big") {
+            both.rotate_left(16)
+        } else {
+            both
+        }
+    }
+
+    #[inline(always)]
+    fn pair_of(first: Self, second: Self) -> i32 {
+        i32::from(second) << 16 | i32::from(first) & 0xffff
+    }
+
+    #[inline(always)]
+    fn of_pair(pair: i32) -> [f32; 2] {
+        [(pair << 16 >> 16) as f32, (pair >> 16) as f32]
+    }
+
+    #[inline(always)]
+    fn unzip([a, b, c, d]: [i32; LANES]) -> [f32x4; 2] {
+        let both = i32x4::new([a, b, c, d]);
         let low: i32x4 = (both << 16) >> 16;
         let high: i32x4 = both >> 16;
         [low.round_float(), high.round_float()]
@@ -620,8 +649,26 @@ impl Value for i16 {
 }
 
 impl Value for f32 {
+    type Pair = [f32; 2];
+
     #[inline(always)]
-    fn unzip([a, b, c, d]: [[Self; 2]; LANES]) -> [f32x4; 2] {
+    fn pair(values: &[Self], first: usize) -> [f32; 2] {
+        let pair = &values[first..first + 2];
+        [pair[0], pair[1]]
+    }
+
+    #[inline(always)]
+    fn pair_of(first: f32, second: f32) -> [f32; 2] {
+        [first, second]
+    }
+
+    #[inline(always)]
+    fn of_pair(pair: [f32; 2]) -> [f32; 2] {
+        pair
+    }
+
+    #[inline(always)]
+    fn unzip([a, b, c, d]: [[f32; 2]; LANES]) -> [f32x4; 2] {
         [
             f32x4::new([a[0], b[0], c[0], d[0]]),
             f32x4::new([a[1], b[1], c[1], d[1]]),
@@ -634,13 +681,7 @@ struct Eight([f32x4; 8]);
 
 impl Eight {
     #[inline(always)]
-    fn of<T: Value>(rows: &[[[T; 2]; LANES]; 4]) -> Self {
-        let [[a, b], [c, d], [e, f], [g, h]] = [
-            T::unzip(rows[0]),
-            T::unzip(rows[1]),
-            T::unzip(rows[2]),
-            T::unzip(rows[3]),
-        ];
+    fn of([[a, b], [c, d], [e, f], [g, h]]: [[f32x4; 2]; 4]) -> Self {
         Self([a, b, c, d, e, f, g, h])
     }
 
@@ -745,16 +786,18 @@ fn linear(dims: [u32; 3], at: [u32; 3]) -> usize {
 
 /// How far the four rows around a place lie from the first.
 #[inline(always)]
-fn row_offsets(dims: [u32; 3]) -> [usize; 4] {
-    let [nx, ny] = [dims[0] as usize, dims[1] as usize];
+fn row_offsets([nx, ny, _]: [u32; 3]) -> [u32; 4] {
     [0, nx, nx * ny, nx * ny + nx]
 }
 
 /// Trilinear interpolation of a single point.
 #[inline(always)]
-fn lerp_one<T: Value>(rows: [[T; 2]; 4], t: Vec3) -> f32 {
+fn lerp_one<T: Value>(rows: [T::Pair; 4], t: Vec3) -> f32 {
     let lerp = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let row = |i: usize| lerp(rows[i][0].into(), rows[i][1].into(), t.x);
+    let row = |i: usize| {
+        let [first, second] = T::of_pair(rows[i]);
+        lerp(first, second, t.x)
+    };
     lerp(lerp(row(0), row(1), t.y), lerp(row(2), row(3), t.y), t.z)
 }
 
@@ -833,8 +876,8 @@ mod tests {
                 for x in 0..DIMS[0] - 1 {
                     for t in [Vec3::ZERO, Vec3::ONE, Vec3::new(0.2, 0.9, 0.4)] {
                         let [a, b] = [&sparse, &dense].map(|s| {
-                            let corners = [[x, y, z]; LANES];
-                            let (value, _) = s.interpolated(corners, Vectors::splat(t), LANES);
+                            let [x, y, z] = [x, y, z].map(|c| i32x4::splat(c as i32));
+                            let (value, _) = s.interpolated(Voxels { x, y, z }, Vectors::splat(t));
                             value.to_array()[0]
                         });
                         assert!((a - b).abs() < 1e-4, "{x} {y} {z} {t}: {a} {b}");

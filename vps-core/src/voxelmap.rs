@@ -1,3 +1,6 @@
+use wide::f32x4;
+
+use crate::lanes::{LANES, Voxels};
 use crate::sampling::{Linear, LocalPenetration, Trilinear};
 use crate::store::{CELL, product};
 use crate::{Aabb, Grid, Storage, Store};
@@ -181,18 +184,24 @@ impl<'a> Voxelmap<'a> {
         &self.bends
     }
 
-    /// The bend around a voxel in metres, infinite where it is not known.
+    /// The bends around voxels in metres, enormous where they are not known (but finite: over no way
+    /// at all nothing bends).
     #[inline(always)]
-    pub(crate) fn bend(&self, voxel: [u32; 3]) -> f32 {
+    pub(crate) fn bends_at(&self, voxels: Voxels) -> f32x4 {
+        let enormous = f32x4::splat(f32::MAX);
         if self.bends.is_empty() {
-            return f32::INFINITY;
+            return enormous;
         }
-        let cells = self.store.cell_dims();
-        let cell = (voxel[2] / CELL * cells[1] + voxel[1] / CELL) * cells[0] + voxel[0] / CELL;
-        match self.bends[cell as usize] {
-            UNKNOWN_BEND => f32::INFINITY,
-            steps => f32::from(steps) * (self.grid.voxel_size() / BEND_STEPS),
+        let cells = voxels
+            .blocks(CELL.ilog2() as i32)
+            .linear(self.store.cell_dims());
+        let mut steps = [0.0; LANES];
+        for lane in 0..LANES {
+            steps[lane] = f32::from(self.bends[cells[lane] as usize]);
         }
+        let steps = f32x4::new(steps);
+        let is_unknown = steps.simd_eq(f32x4::splat(f32::from(UNKNOWN_BEND)));
+        is_unknown.select(enormous, steps * (self.grid.voxel_size() / BEND_STEPS))
     }
 
     /// V of a voxel's centre in metres.
