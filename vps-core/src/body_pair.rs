@@ -138,26 +138,24 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     /// Penalty force and torque on the first body about `center`, all in its frame; the second body
     /// takes the opposite.
     pub fn wrench_on_first(&self, center: Vec3, weight: Weight) -> Wrench {
+        let (first, second) = self.is_shell();
+        let part = if first && second { 0.5 } else { 1.0 };
         let mut wrench = Wrench::default();
-        let part = if self.shells == Shells::Both {
-            0.5
-        } else {
-            1.0
-        };
-        self.for_each_contact(|contact| {
-            let tree = match contact.shell {
-                Side::First => self.first.tree,
-                Side::Second => self.second.tree,
-            };
-            let as_first = Contact {
-                point: contact.point,
-                position: contact.position,
-                normal: contact.push,
-                penetration: contact.penetration,
-            };
-            let weight = part * weight.of(tree.area(contact.point as usize));
-            wrench.add(&as_first, weight, center);
-        });
+        if !self.second_to_first.is_finite() {
+            return wrench;
+        }
+        if first {
+            let on_first = self.first_in_second().wrench(center, weight);
+            wrench.force += part * on_first.force;
+            wrench.torque += part * on_first.torque;
+        }
+        if second {
+            let to_first = self.second_to_first;
+            let center = to_first.inverse_transform_point(center);
+            let on_second = self.second_in_first().wrench(center, weight);
+            wrench.force -= part * (to_first.rotation * on_second.force);
+            wrench.torque -= part * (to_first.rotation * on_second.torque);
+        }
         wrench
     }
 

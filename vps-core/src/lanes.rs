@@ -51,11 +51,7 @@ impl Points {
     /// If there is none.
     #[inline(always)]
     pub fn read(points: &[[f32; 3]], first: usize) -> Self {
-        let points = &points[first..];
-        let [a, b, c, d] = match points.first_chunk() {
-            Some(&four) => four,
-            None => padded(points),
-        };
+        let [a, b, c, d] = padded(&points[first..]);
         Self {
             x: [a[0], b[0], c[0], d[0]],
             y: [a[1], b[1], c[1], d[1]],
@@ -75,11 +71,20 @@ impl Points {
     }
 }
 
+/// The first of `all` (one at least); should there be fewer than lanes, the last is repeated.
+#[inline(always)]
+pub(crate) fn padded<T: Copy>(all: &[T]) -> [T; LANES] {
+    match all.first_chunk() {
+        Some(&first) => first,
+        None => fewer(all),
+    }
+}
+
 #[cold]
-fn padded(points: &[[f32; 3]]) -> [[f32; 3]; LANES] {
-    let mut all = [points[points.len() - 1]; LANES];
-    all[..points.len()].copy_from_slice(points);
-    all
+fn fewer<T: Copy>(all: &[T]) -> [T; LANES] {
+    let mut first = [all[all.len() - 1]; LANES];
+    first[..all.len()].copy_from_slice(all);
+    first
 }
 
 /// Vectors in registers.
@@ -103,6 +108,25 @@ impl Vectors {
     #[inline(always)]
     pub(crate) fn dot(self, other: Self) -> f32x4 {
         self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    pub(crate) fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    /// Of all lanes.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> Vec3 {
+        let sum = |axis: f32x4| {
+            let [a, b, c, d] = axis.to_array();
+            (a + b) + (c + d)
+        };
+        Vec3::new(sum(self.x), sum(self.y), sum(self.z))
     }
 
     #[inline(always)]

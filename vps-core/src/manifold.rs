@@ -4,7 +4,7 @@ use wide::f32x4;
 use crate::dispatch::dispatch;
 use crate::lanes::{LANES, Vectors};
 use crate::query::TOP;
-use crate::search::Goal;
+use crate::search::{Found, Goal};
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Points, Query};
 
@@ -183,7 +183,7 @@ impl Near {
             while better != 0 {
                 let (point, penetration) = kept[better.trailing_zeros() as usize];
                 better &= better - 1;
-                spread.offer(Contact {
+                spread.consider(Contact {
                     point,
                     position: tree.point(point as usize),
                     normal: tree.normal(point as usize),
@@ -223,30 +223,26 @@ impl Goal for Near {
     const BEST_FIRST: bool = true;
 
     #[inline(always)]
-    fn least(&self) -> f32 {
-        self.least
-    }
-
-    #[inline(always)]
     fn least_penetration(&self) -> f32 {
         self.least
     }
 
     #[inline(always)]
-    fn offer(&mut self, contact: Contact) -> bool {
-        // What was found deeper in the same batch may have left it behind.
-        if contact.penetration < self.least {
-            return true;
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        for contact in found.each() {
+            if contact.is_deeper_than(self.deepest.as_ref()) {
+                self.deepest = Some(contact);
+                self.least = if self.is_full {
+                    contact.penetration
+                } else {
+                    least_deep(contact.penetration, self.margin)
+                };
+            }
+            // One found with it may be so much deeper that it matters no more.
+            if contact.penetration >= self.least {
+                self.keep(&contact);
+            }
         }
-        if contact.is_deeper_than(self.deepest.as_ref()) {
-            self.deepest = Some(contact);
-            self.least = if self.is_full {
-                contact.penetration
-            } else {
-                least_deep(contact.penetration, self.margin)
-            };
-        }
-        self.keep(&contact);
         true
     }
 }
@@ -289,7 +285,14 @@ impl<const N: usize> Goal for Spread<'_, N> {
     }
 
     #[inline(always)]
-    fn offer(&mut self, contact: Contact) -> bool {
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        found.each().for_each(|contact| self.consider(contact));
+        true
+    }
+}
+
+impl<const N: usize> Spread<'_, N> {
+    fn consider(&mut self, contact: Contact) {
         if let Some(score) = self.polygon.score(&contact) {
             let is_first = |best: &Contact| {
                 score > self.least || score == self.least && contact.point < best.point
@@ -299,7 +302,6 @@ impl<const N: usize> Goal for Spread<'_, N> {
                 self.found = Some(contact);
             }
         }
-        true
     }
 }
 

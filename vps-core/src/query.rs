@@ -2,7 +2,7 @@ use glamx::{Mat3, Pose3, Vec3};
 
 use crate::dispatch::dispatch;
 use crate::lanes::Vectors;
-use crate::search::Goal;
+use crate::search::{Found, Goal};
 use crate::work::{CountWork, Work};
 use crate::{DistanceField, PointSphereTree};
 
@@ -190,18 +190,13 @@ impl<V: FnMut(Contact)> Goal for All<V> {
     const BEST_FIRST: bool = false;
 
     #[inline(always)]
-    fn least(&self) -> f32 {
-        -self.margin
-    }
-
-    #[inline(always)]
     fn least_penetration(&self) -> f32 {
         -self.margin
     }
 
     #[inline(always)]
-    fn offer(&mut self, contact: Contact) -> bool {
-        (self.visit)(contact);
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        found.each().for_each(&mut self.visit);
         true
     }
 }
@@ -216,17 +211,12 @@ impl Goal for Any {
     const BEST_FIRST: bool = true;
 
     #[inline(always)]
-    fn least(&self) -> f32 {
-        -self.margin
-    }
-
-    #[inline(always)]
     fn least_penetration(&self) -> f32 {
         -self.margin
     }
 
     #[inline(always)]
-    fn offer(&mut self, _contact: Contact) -> bool {
+    fn offer(&mut self, _found: &Found<'_>) -> bool {
         self.found = true;
         false
     }
@@ -251,20 +241,17 @@ impl Goal for Deepest {
     const BEST_FIRST: bool = true;
 
     #[inline(always)]
-    fn least(&self) -> f32 {
-        self.least
-    }
-
-    #[inline(always)]
     fn least_penetration(&self) -> f32 {
         self.least
     }
 
     #[inline(always)]
-    fn offer(&mut self, contact: Contact) -> bool {
-        if contact.is_deeper_than(self.found.as_ref()) {
-            self.least = contact.penetration;
-            self.found = Some(contact);
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        for contact in found.each() {
+            if contact.is_deeper_than(self.found.as_ref()) {
+                self.least = contact.penetration;
+                self.found = Some(contact);
+            }
         }
         true
     }

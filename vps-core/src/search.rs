@@ -6,7 +6,7 @@ use crate::lanes::Vectors;
 use crate::query::Query;
 use crate::tree::{Cluster, MAX_LEVELS};
 use crate::work::CountWork;
-use crate::{Contact, Discs, DistanceField, LANES, Points};
+use crate::{Contact, Discs, DistanceField, LANES, PointSphereTree, Points};
 
 /// What a search looks for: contacts with a score of at least [`least`](Self::least).
 pub(crate) trait Goal {
@@ -21,14 +21,17 @@ pub(crate) trait Goal {
         penetrations
     }
 
-    /// The score from which on contacts matter; it may rise with what was offered.
-    fn least(&self) -> f32;
+    /// The score from which on contacts matter; it may rise with what was offered. The penetration,
+    /// unless [`bounds`](Self::bounds) says otherwise.
+    fn least(&self) -> f32 {
+        self.least_penetration()
+    }
 
     /// The penetration from which on contacts matter.
     fn least_penetration(&self) -> f32;
 
-    /// Takes a contact with at least that penetration. False ends the search.
-    fn offer(&mut self, contact: Contact) -> bool;
+    /// Takes contacts with at least that penetration. False ends the search.
+    fn offer(&mut self, found: &Found<'_>) -> bool;
 }
 
 /// The children of one cluster that are still to be looked at.
@@ -168,7 +171,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         let (discs, penetrations) = self.bounds_of(&clusters[frame.first as usize..]);
         let bounds = goal.bounds(&discs, f32x4::new(penetrations));
         // What is no number is below everything, and so are the lanes that are not in use.
-        let counts = NUMBERS.simd_lt(f32x4::splat(count as f32)) & bounds.simd_eq(bounds);
+        let counts = below(count) & bounds.simd_eq(bounds);
         frame.bounds = counts.select(bounds, f32x4::splat(f32::NEG_INFINITY));
     }
 
@@ -214,21 +217,18 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 &self.to_field(positions.into()).into(),
                 &Vectors::from(inward).rotated(&self.rotation).into(),
             ));
-            let matters = penetrations.simd_ge(f32x4::splat(goal.least_penetration()));
-            let mut lanes = matters.to_bitmask() & below(end - next);
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros();
-                lanes &= lanes - 1;
-                let point = next + lane;
-                let contact = Contact {
-                    point,
-                    position: self.tree.point(point as usize),
-                    normal: self.tree.normal(point as usize),
-                    penetration: penetrations.to_array()[lane as usize % LANES],
-                };
-                if !goal.offer(contact) {
-                    return false;
-                }
+            let counts =
+                below(end - next) & penetrations.simd_ge(f32x4::splat(goal.least_penetration()));
+            let found = Found {
+                tree: self.tree,
+                first: next,
+                counts,
+                positions: positions.into(),
+                inward: inward.into(),
+                penetrations,
+            };
+            if counts.any() && !goal.offer(&found) {
+                return false;
             }
             next += LANES as u32;
         }
@@ -236,8 +236,43 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     }
 }
 
-/// The lowest bits, so many as there are lanes in use.
+/// Points that were tested together.
+pub(crate) struct Found<'t> {
+    tree: &'t PointSphereTree<'t>,
+    /// The first one's number.
+    pub(crate) first: u32,
+    /// Which of them are contacts.
+    pub(crate) counts: f32x4,
+    /// In the shell frame, and so the normals.
+    pub(crate) positions: Vectors,
+    pub(crate) inward: Vectors,
+    pub(crate) penetrations: f32x4,
+}
+
+impl Found<'_> {
+    /// The contacts one by one, in order.
+    #[inline(always)]
+    pub(crate) fn each(&self) -> impl Iterator<Item = Contact> {
+        let mut lanes = self.counts.to_bitmask();
+        core::iter::from_fn(move || {
+            if lanes == 0 {
+                return None;
+            }
+            let lane = lanes.trailing_zeros();
+            lanes &= lanes - 1;
+            let point = self.first + lane;
+            Some(Contact {
+                point,
+                position: self.tree.point(point as usize),
+                normal: self.tree.normal(point as usize),
+                penetration: self.penetrations.to_array()[lane as usize % LANES],
+            })
+        })
+    }
+}
+
+/// The first lanes, so many as are in use.
 #[inline(always)]
-fn below(count: u32) -> u32 {
-    (1 << count.min(LANES as u32)) - 1
+fn below(count: u32) -> f32x4 {
+    NUMBERS.simd_lt(f32x4::splat(count as f32))
 }

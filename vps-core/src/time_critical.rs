@@ -1,8 +1,10 @@
 use glamx::Vec3;
 
 use crate::dispatch::dispatch;
-use crate::query::{All, TOP};
+use crate::query::{All, Deepest, TOP};
+use crate::search::{Found, Goal};
 use crate::work::CountWork;
+use crate::wrench::Sum;
 use crate::{Contact, DistanceField, Query, Weight, Wrench};
 
 /// What a query knows of the contact set when its time is over.
@@ -79,32 +81,55 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         }
         let leaf_level = self.tree.level_count();
         let leaves = self.tree.level(leaf_level);
-        let mut pass = Pass::default();
+        let mut points = Points {
+            margin: self.margin,
+            sum: Sum::new(self.tree, center, Weight::Area, -self.margin),
+            deepest: Deepest::new(self.margin),
+        };
+        points.deepest.found = estimate.deepest;
         let mut stopped = false;
-        let mut test = |leaf: u32, _: f32, _: &mut _| {
+        let mut test = |leaf: u32, _: f32, points: &mut Points<'_>| {
             if !go_on(tested) {
                 stopped = true;
                 return false;
             }
             let leaf = &leaves[leaf as usize];
             tested += u64::from(leaf.count);
-            let mut points = All::new(self.margin, |contact: Contact| {
-                let area = self.tree.area(contact.point as usize);
-                pass.add(&contact, area, center, &mut estimate.deepest);
-            });
-            self.offer_points((leaf.first, leaf.first + leaf.count), &mut points)
+            self.offer_points((leaf.first, leaf.first + leaf.count), points)
         };
         dispatch(
             #[inline(always)]
-            || self.descend((1, TOP), leaf_level, &mut every, &mut test),
+            || self.descend((1, TOP), leaf_level, &mut points, &mut test),
         );
+        estimate.deepest = points.deepest.found;
         if !stopped {
             let deepest = estimate.deepest.map_or(-self.margin, |d| d.penetration);
             estimate.penetration_bound = deepest;
-            estimate.wrench = pass.wrench;
+            estimate.wrench = points.sum.wrench();
             estimate.is_complete = true;
         }
         estimate
+    }
+}
+
+/// What all points tell.
+struct Points<'q> {
+    margin: f32,
+    sum: Sum<'q>,
+    deepest: Deepest,
+}
+
+impl Goal for Points<'_> {
+    const BEST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn least_penetration(&self) -> f32 {
+        -self.margin
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        self.deepest.offer(found) && self.sum.offer(found)
     }
 }
 

@@ -1,7 +1,10 @@
 use glamx::Vec3;
+use wide::f32x4;
 
+use crate::lanes::{Vectors, padded};
+use crate::search::{Found, Goal};
 use crate::work::CountWork;
-use crate::{Contact, DistanceField, Query};
+use crate::{Contact, DistanceField, PointSphereTree, Query};
 
 /// The penalty force and torque of a contact set (eqs. 2 and 3), for stiffness one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,11 +53,65 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Penalty force and torque on the shell's body about `center`, all in the shell frame, for
     /// stiffness one. Points within the margin but outside of the solid add nothing.
     pub fn wrench(&self, center: Vec3, weight: Weight) -> Wrench {
-        let mut wrench = Wrench::default();
-        let areas = self.tree.areas();
-        self.for_each_contact(|contact| {
-            wrench.add(&contact, weight.of(areas[contact.point as usize]), center);
-        });
-        wrench
+        let least = (-self.margin).max(0.0);
+        self.find(Sum::new(self.tree, center, weight, least))
+            .wrench()
+    }
+}
+
+/// The wrench of all contacts, lane by lane.
+pub(crate) struct Sum<'q> {
+    least: f32,
+    /// Of all points, if they count.
+    areas: Option<&'q [f32]>,
+    center: Vectors,
+    force: Vectors,
+    torque: Vectors,
+}
+
+impl<'q> Sum<'q> {
+    /// Of points with at least so much penetration.
+    pub(crate) fn new(
+        tree: &'q PointSphereTree<'_>,
+        center: Vec3,
+        weight: Weight,
+        least: f32,
+    ) -> Self {
+        Self {
+            least,
+            areas: (weight == Weight::Area).then(|| tree.areas()),
+            center: Vectors::splat(center),
+            force: Vectors::splat(Vec3::ZERO),
+            torque: Vectors::splat(Vec3::ZERO),
+        }
+    }
+
+    pub(crate) fn wrench(&self) -> Wrench {
+        Wrench {
+            force: self.force.sum(),
+            torque: self.torque.sum(),
+        }
+    }
+}
+
+impl Goal for Sum<'_> {
+    const BEST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn least_penetration(&self) -> f32 {
+        self.least
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        let mut weights = found.counts & found.penetrations.fast_max(f32x4::ZERO);
+        if let Some(areas) = self.areas {
+            weights *= f32x4::new(padded(&areas[found.first as usize..]));
+        }
+        let force = found.inward.times(weights);
+        self.force = self.force.plus(force);
+        let arm = found.positions.minus(self.center);
+        self.torque = self.torque.plus(arm.cross(force));
+        true
     }
 }
