@@ -70,6 +70,8 @@ fn assemble(samples: &Samples, levels: &[Level]) -> Result<PointSphereTree<'stat
                 radius: 0.0,
                 normal: [0.0; 3],
                 thickness: 0.0,
+                lift: 0.0,
+                bulge: 0.0,
                 first: next.len() as u32,
                 count: level.members[cluster].len() as u32,
                 parent_point: level.parent_points[cluster] as u32,
@@ -153,13 +155,45 @@ fn wrap(
                 .sum();
             let normal = facing.normalize_or(Vec3::Y);
             cluster.normal = normal.to_array();
-            cluster.thickness = points[start..end]
-                .iter()
-                .map(|&p| (Vec3::from_array(p) - center).dot(normal).abs())
-                .fold(0.0, f32::max);
+            let held = || points[start..end].iter().map(|&p| Vec3::from_array(p));
+            let around: Vec<_> = held().map(|p| cluster.around(p)).collect();
+            (cluster.lift, cluster.bulge) = dish(&around, cluster.radius);
+            cluster.thickness = held().map(|p| cluster.off_dish(p)).fold(0.0, f32::max);
             let area: f64 = areas[start..end].iter().map(|&a| f64::from(a)).sum();
             cluster.area = area as f32;
         });
+}
+
+/// The lift and bulge of the dish that points lie closest to, given the square of their distance
+/// from its axis and their height: the largest distance from it is as small as can be, but for a
+/// search that ends early.
+fn dish(around: &[(f32, f32)], radius: f32) -> (f32, f32) {
+    // The middle of the heights above a bowl without lift, and how far they are from it.
+    let off = |bulge: f32| {
+        let heights = around
+            .iter()
+            .map(|(square, height)| height - bulge * square);
+        let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), h| {
+            (low.min(h), high.max(h))
+        });
+        (0.5 * (low + high), high - low)
+    };
+    if around.len() < 3 || radius == 0.0 {
+        return (off(0.0).0, 0.0);
+    }
+    // How far off they are is convex in the bulge: the third of the range beyond the larger of two
+    // is left out.
+    let (mut low, mut high) = (-1.0 / radius, 1.0 / radius);
+    for _ in 0..12 {
+        let third = (high - low) / 3.0;
+        if off(low + third).1 < off(high - third).1 {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    let bulge = 0.5 * (low + high);
+    (off(bulge).0, bulge)
 }
 
 /// Divides points into clusters of about `size`, one after the other: each takes the points

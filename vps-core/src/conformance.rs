@@ -25,16 +25,6 @@ pub enum Violation {
         /// Its penetration.
         penetration: f32,
     },
-    /// A disc has a higher bound than the ball around it.
-    #[error("the disc around {center} has bound {disc} m, the ball {ball} m")]
-    Disc {
-        /// Its centre.
-        center: Vec3,
-        /// Its bound.
-        disc: f32,
-        /// That of the ball.
-        ball: f32,
-    },
     /// Several points at a time have other penetrations than one by one.
     #[error("{point} has penetration {alone} m alone, but {together} m with others")]
     Lanes {
@@ -67,7 +57,8 @@ pub enum Violation {
 
 /// Checks the promises for a ball, a disc and a point in both: `inside` lies in the unit ball and
 /// is scaled to the ball around `center`; the disc lies across the unit vector `normal`, which is
-/// also that of the point, and is as thick as the point needs it to be.
+/// also that of the point, and is flat or bent one way or the other, and as thick as the point needs
+/// it to be.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -81,19 +72,34 @@ pub fn check(
     let point = center + inside * radius;
     let penetration = field.penetration(point, normal);
     let rounding = 16.0 * f32::EPSILON * (center.length() + radius);
-    let (radius, thickness) = (
-        radius + rounding,
-        (point - center).dot(normal).abs() + rounding,
-    );
+    let radius = radius + rounding;
     let ball = field.penetration_bound(center, radius);
-    let discs = Discs {
+    let height = (point - center).dot(normal);
+    let square = (point - center - normal * height).length_squared();
+    let mut discs = Discs {
         centers: Points::splat(center),
         radii: [radius; LANES],
         normals: Points::splat(normal),
-        thickness: [thickness; LANES],
+        lifts: [0.0; LANES],
+        bulges: [0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius],
+        thickness: [0.0; LANES],
     };
-    let disc = field.penetration_bounds(&discs)[LANES - 1];
-    for (piece, bound) in [("ball", ball), ("disc", disc)] {
+    for lane in 0..LANES {
+        let above = height - discs.bulges[lane] * square;
+        // The flat one stays at the centre. Others are lifted half of the way to the point and are
+        // as thick as the other half; the last is lifted right to it.
+        discs.lifts[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
+        discs.thickness[lane] = (above - discs.lifts[lane]).abs() + rounding;
+    }
+    let bounds = field.penetration_bounds(&discs);
+    let pieces = [
+        ("ball", ball),
+        ("disc", bounds[0]),
+        ("bowl", bounds[1]),
+        ("dome", bounds[2]),
+        ("deep bowl", bounds[3]),
+    ];
+    for (piece, bound) in pieces {
         if penetration > bound {
             return Err(Violation::Bound {
                 piece,
@@ -104,9 +110,6 @@ pub fn check(
                 penetration,
             });
         }
-    }
-    if disc > ball + rounding {
-        return Err(Violation::Disc { center, disc, ball });
     }
     let mut points = Points::splat(center);
     (points.x[1], points.y[1], points.z[1]) = (point.x, point.y, point.z);

@@ -43,9 +43,9 @@ pub trait DistanceField {
         core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
     }
 
-    /// Upper bounds on the [`penetration`](Self::penetration) in several discs, each at most the
-    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field that knows
-    /// how it bends can use that a disc is flat.
+    /// Upper bounds on the [`penetration`](Self::penetration) in several pieces. A field that knows
+    /// how it bends can use how flat a piece is, and which way it is bent; others take the balls
+    /// around them.
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         core::array::from_fn(|i| self.penetration_bound(discs.centers.get(i), discs.radii[i]))

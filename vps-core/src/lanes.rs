@@ -19,8 +19,10 @@ pub struct Points {
     pub z: [f32; LANES],
 }
 
-/// Flat pieces of a shell: each holds what is no further than a radius from its centre, and no
-/// further than its thickness from the plane through the centre. Lengths in metres.
+/// Pieces of a shell, each close to a dish: a disc that may be bent like a bowl. A piece holds what
+/// is no further than its radius from its centre, and no further than its thickness, measured along
+/// its normal, from the height lift + bulge × r² above the plane through the centre, r being the
+/// distance from the line through the centre along the normal. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discs {
     /// Their centres.
@@ -29,7 +31,11 @@ pub struct Discs {
     pub radii: [f32; LANES],
     /// Unit normals of their planes.
     pub normals: Points,
-    /// How far from its plane a piece reaches on either side.
+    /// How high above its centre the middle of a dish is.
+    pub lifts: [f32; LANES],
+    /// How much a dish bends towards its normal, per metre.
+    pub bulges: [f32; LANES],
+    /// How far from its dish a piece reaches on either side.
     pub thickness: [f32; LANES],
 }
 
@@ -311,17 +317,39 @@ impl Discs {
             centers: *centers,
             radii,
             normals: Points::splat(Vec3::Y),
+            lifts: [0.0; LANES],
+            bulges: [0.0; LANES],
             thickness: radii,
         }
     }
 
+    /// The pieces grown to hold what is up to `by` metres away from a point of theirs.
+    #[inline(always)]
+    pub(crate) fn grown(&self, by: f32) -> Self {
+        let radii = f32x4::new(self.radii);
+        // A step aside of `by` changes the height of the dish by no more than this.
+        let aside = f32x4::new(self.bulges).abs() * (radii + radii + by) * by;
+        Self {
+            radii: (radii + by).to_array(),
+            thickness: (f32x4::new(self.thickness) + by + aside).to_array(),
+            ..*self
+        }
+    }
+
     /// How much more than at its centre a linear function with the given gradients (per metre) is
-    /// in a disc at most.
+    /// in a piece at most.
     #[inline(always)]
     pub(crate) fn rise(&self, gradients: Vectors) -> f32x4 {
         let normals = Vectors::from(self.normals);
+        let radii = f32x4::new(self.radii);
         let across = gradients.dot(normals);
         let along = gradients.minus(normals.times(across)).length();
-        across.abs() * f32x4::new(self.thickness) + along * f32x4::new(self.radii)
+        // On the dish the function is along r + bend r²: largest at the rim, or before it.
+        let bend = across * f32x4::new(self.bulges);
+        let before = radii.fast_min(along / (bend * -2.0));
+        let r = bend.simd_lt(f32x4::ZERO).select(before, radii);
+        across * f32x4::new(self.lifts)
+            + across.abs() * f32x4::new(self.thickness)
+            + r * (along + bend * r)
     }
 }

@@ -226,11 +226,13 @@ impl Trilinear<'_> {
         let (corners, between) = grid.cells_at(inside);
         let (values, slopes) = store.interpolated(corners, between);
         let sigma = f32x4::splat(self.0.sigma());
+        let off = points.minus(inside);
         Sampled {
             values: values * sigma,
             gradients: slopes.times(sigma * grid.per_metre()),
             corners,
-            outside: points.minus(inside).length_if_any(),
+            outside: off.length_if_any(),
+            off,
         }
     }
 
@@ -248,7 +250,9 @@ impl Trilinear<'_> {
     /// straight way from the centre to a point r voxels away, the slope changes at each face
     /// between voxels by no more than the bend, and there are no more than r / s + 1 of them along
     /// an axis; between faces it changes by the twist of the squares. Together the point has no
-    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends.
+    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends. Outside
+    /// of the grid all that holds for the closest points in it; since what is sampled falls with the
+    /// way to the grid, the linear function goes on to hold there, unless it falls faster.
     #[inline(always)]
     fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
@@ -268,11 +272,17 @@ impl Trilinear<'_> {
         let mut out = by_way - (sampled.outside - radii).fast_max(f32x4::ZERO);
 
         let voxels = radii * map.grid().per_metre();
-        let room = centers.room_in(&map.grid().center_bounds());
-        let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS)) & room.simd_ge(radii);
-        let bent = at_center
-            + discs.rise(sampled.gradients)
+        let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
+        let gradients = sampled.gradients;
+        let mut bent = at_center
+            + gradients.dot(sampled.off)
+            + discs.rise(gradients)
             + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
+        let leaves = centers.room_in(&map.grid().center_bounds()).simd_lt(radii);
+        if leaves.any() {
+            let steeper = (gradients.length() - 1.0).fast_max(f32x4::ZERO);
+            bent += leaves & (steeper * (sampled.outside + radii));
+        }
         out = is_near.select(bent.fast_min(out), out);
 
         let is_outside = sampled.outside.simd_gt(f32x4::ZERO);
@@ -299,6 +309,8 @@ struct Sampled {
     /// The lowest of the voxels around.
     corners: Voxels,
     /// The way from the box in metres.
+    off: Vectors,
+    /// How long that is.
     outside: f32x4,
 }
 

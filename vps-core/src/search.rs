@@ -192,10 +192,13 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         let normals = Vectors { x, y, z };
         let discs = Discs {
             centers: centers.into(),
-            radii: (radii + self.ball_slack).to_array(),
+            radii: radii.to_array(),
             normals: normals.into(),
-            thickness: (thickness + self.ball_slack).to_array(),
-        };
+            lifts: [a.2[0], b.2[0], c.2[0], d.2[0]],
+            bulges: [a.2[1], b.2[1], c.2[1], d.2[1]],
+            thickness: thickness.to_array(),
+        }
+        .grown(self.ball_slack);
         let in_field = Discs {
             centers: self.to_field(centers).into(),
             normals: normals.rotated(&self.rotation).into(),

@@ -148,11 +148,6 @@ impl<F: DistanceField + ?Sized> DistanceField for Grown<'_, F> {
 
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
-        let mut grown = *discs;
-        for lane in 0..LANES {
-            grown.radii[lane] += self.by;
-            grown.thickness[lane] += self.by;
-        }
-        self.field.penetration_bounds(&grown)
+        self.field.penetration_bounds(&discs.grown(self.by))
     }
 }

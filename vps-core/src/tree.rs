@@ -15,10 +15,16 @@ pub struct Cluster {
     pub center: [f32; 3],
     /// Radius R of that ball in metres.
     pub radius: f32,
-    /// Unit normal of a plane through the centre the points lie close to.
+    /// Unit normal of a plane through the centre; the points lie close to a dish on it, a disc that
+    /// may be bent like a bowl.
     pub normal: [f32; 3],
-    /// How far from that plane they lie at most, in metres.
+    /// How far from the dish they lie at most, in metres along the normal.
     pub thickness: f32,
+    /// How high above the centre the middle of the dish is, in metres along the normal.
+    pub lift: f32,
+    /// How much the dish bends towards the normal, per metre: at a distance r from the line through
+    /// the centre along the normal it is lift + bulge × r² high.
+    pub bulge: f32,
     /// The first child: a cluster of the next level, counted from that level's start, or on the
     /// leaf level a point.
     pub first: u32,
@@ -31,11 +37,30 @@ pub struct Cluster {
 }
 
 impl Cluster {
-    /// Centre and radius, normal and thickness.
+    /// Centre and radius, normal and thickness, lift and bulge.
     #[inline(always)]
-    pub(crate) fn disc(&self) -> (f32x4, f32x4) {
-        let [disc, flat, _]: [[f32; 4]; 3] = bytemuck::cast(*self);
-        (f32x4::new(disc), f32x4::new(flat))
+    pub(crate) fn disc(&self) -> (f32x4, f32x4, [f32; 2]) {
+        let ([x, y, z], [u, v, w]) = (self.center, self.normal);
+        (
+            f32x4::new([x, y, z, self.radius]),
+            f32x4::new([u, v, w, self.thickness]),
+            [self.lift, self.bulge],
+        )
+    }
+
+    /// The square of how far a point is from the line through the centre along the normal, and how
+    /// high above the centre it is, in metres.
+    pub fn around(&self, point: Vec3) -> (f32, f32) {
+        let normal = Vec3::from_array(self.normal);
+        let from_center = point - Vec3::from_array(self.center);
+        let height = from_center.dot(normal);
+        ((from_center - normal * height).length_squared(), height)
+    }
+
+    /// How far from the dish a point is in metres along the normal.
+    pub fn off_dish(&self, point: Vec3) -> f32 {
+        let (square, height) = self.around(point);
+        (height - (self.lift + self.bulge * square)).abs()
     }
 }
 
@@ -96,8 +121,8 @@ pub enum TreeError {
     /// The parent point lies in another cluster.
     #[error("the parent point of cluster {0} is not below it")]
     ParentPoint(usize),
-    /// A ball, or the flat part of it, leaves a point out.
-    #[error("the disc of cluster {cluster} does not hold point {point}")]
+    /// A ball, or the dish in it, leaves a point out.
+    #[error("the ball and dish of cluster {cluster} do not hold point {point}")]
     Disc {
         /// The cluster.
         cluster: usize,
@@ -198,14 +223,13 @@ impl<'a> PointSphereTree<'a> {
                     return Err(TreeError::ParentPoint(start + i));
                 }
                 let center = Vec3::from_array(cluster.center);
-                let normal = Vec3::from_array(cluster.normal);
-                if !is_unit(normal) {
+                if !is_unit(Vec3::from_array(cluster.normal)) {
                     return Err(TreeError::ClusterNormal(start + i));
                 }
                 let outside = |&p: &usize| {
                     // Written so that a NaN counts as outside.
                     let inside = center.distance(self.point(p)) <= cluster.radius
-                        && (self.point(p) - center).dot(normal).abs() <= cluster.thickness;
+                        && cluster.off_dish(self.point(p)) <= cluster.thickness;
                     !inside
                 };
                 let area: f64 = below.clone().map(|p| f64::from(self.areas[p])).sum();
