@@ -198,6 +198,32 @@ mod tests {
         }
     }
 
+    /// Outside of the grid a field falls with the way, even one that falls faster before.
+    #[test]
+    fn a_steep_field_is_bounded_outside_of_its_grid() {
+        for slope in [1.5 * Vec3::X, Vec3::ONE, Vec3::new(0.9, 0.8, 0.1)] {
+            let map = map_of(|p| p.dot(slope));
+            // No distances are so steep: nothing is known but the values as they are.
+            let accuracy = Accuracy {
+                near_m: 100.0,
+                far_m: 100.0,
+                band_m: 100.0,
+            };
+            let bends = map.bends().to_vec();
+            let (grid, store) = (*map.grid(), map.store().clone());
+            let map = Voxelmap::new(grid, 1.0, map.solid(), accuracy, store, bends.into()).unwrap();
+            let down = -slope.normalize();
+            for x in [-11.0, -11.5, -13.0] {
+                let center = Vec3::new(x, -10.9, 3.0);
+                for inside in [down, Vec3::NEG_X, Vec3::new(-0.5, 0.3, 0.8), Vec3::X] {
+                    for normal in [down, down.any_orthonormal_vector()] {
+                        check(&map.trilinear(), center, 4.0, inside, normal).unwrap();
+                    }
+                }
+            }
+        }
+    }
+
     #[test]
     fn what_is_flat_does_not_bend() {
         let slope = Vec3::new(0.25, -0.5, 0.125);
