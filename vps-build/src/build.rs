@@ -401,6 +401,11 @@ fn voxelmap(
             let tolerance = Tolerance {
                 error: interpolated - rounding,
                 band: BAND * size,
+                near: match options.encoding {
+                    Encoding::Layers => 1e-6 * size,
+                    Encoding::Distances(_) => coding.sigma(),
+                    Encoding::Floats => 0.25 * rounding,
+                },
             };
             sparse(&grid, &source, &lattice, coding, tolerance)?
         }

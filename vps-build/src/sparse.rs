@@ -2,7 +2,9 @@
 
 use glamx::DVec3;
 use rayon::prelude::*;
-use vps_core::store::{BRICK_VALUES, CELL, CellGroup, MIDDLE_VALUES, RefinedCell, cell_dims};
+use vps_core::store::{
+    BRICK_VALUES, CELL, CellGroup, MIDDLE_VALUES, RefinedCell, cell_dims, mark_plain,
+};
 use vps_core::{Grid, Store, Values, VoxelmapError};
 
 use crate::distance::Exact;
@@ -61,8 +63,11 @@ impl Coding {
 pub(crate) struct Tolerance {
     /// How far it may be from the exact penetration.
     pub(crate) error: f64,
-    /// What is closer to the surface than this, before or after interpolation, is stored.
+    /// What is closer to the surface than this, before or after interpolation, must be as good as if
+    /// it were stored:
     pub(crate) band: f64,
+    /// no further from the exact penetration than this.
+    pub(crate) near: f64,
 }
 
 /// A voxel's penetration in metres, and the closest point of the mesh if it is known.
@@ -166,6 +171,7 @@ pub(crate) fn sparse(
         }
         groups.push(group);
     }
+    mark_plain(grid.dims(), &mut groups);
     let values = coding.values(values);
     Store::sparse(grid.dims(), groups.into(), cells.into(), values)
 }
@@ -340,8 +346,9 @@ impl<'a> Cell<'a> {
         }
         let exact = self.sample(voxel).0;
         let given = cube.at(voxel);
-        let Tolerance { error, band } = self.tolerance;
-        exact.abs() > band && given.abs() > band && (exact - given).abs() <= error
+        let Tolerance { error, band, near } = self.tolerance;
+        let is_far = exact.abs() > band && given.abs() > band;
+        (exact - given).abs() <= if is_far { error } else { near }
     }
 
     /// Whether a few distances prove that the values are good enough.
@@ -358,7 +365,7 @@ impl<'a> Cell<'a> {
     /// * No point of the mesh is closer to x than d(x), and those closest to the corners and to the
     ///   middle are known: d(x) is no more than the least distance to one of them.
     fn is_proven(&mut self, cube: &Cube, first: [u32; 3], size: u32) -> bool {
-        let Tolerance { error, band } = self.tolerance;
+        let Tolerance { error, band, .. } = self.tolerance;
         let edge = f64::from(size) * f64::from(self.grid.voxel_size());
         let half_diagonal = 0.8661 * edge;
         let (penetration, Some(closest)) = self.sample(first.map(|c| c + size / 2)) else {

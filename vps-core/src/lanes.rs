@@ -302,6 +302,17 @@ impl Voxels {
         }
     }
 
+    /// Where in those blocks they lie, by the lowest bits of their positions.
+    #[inline(always)]
+    pub(crate) fn within(self, mask: i32) -> Vectors {
+        let mask = i32x4::splat(mask);
+        Vectors {
+            x: (self.x & mask).round_float(),
+            y: (self.y & mask).round_float(),
+            z: (self.z & mask).round_float(),
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn get(self, lane: usize) -> [u32; 3] {
         let at = |axis: i32x4| axis.to_array()[lane] as u32;

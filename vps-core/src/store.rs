@@ -62,6 +62,9 @@ impl Values<'_> {
 pub struct CellGroup {
     /// Bit i stands for the i-th of the cells; cells are counted x first, then y, then z.
     pub refined: u64,
+    /// Which cells are plain: neither they nor the next ones along x, y, z, and across, are refined,
+    /// so that the lattice holds for all voxels around a place in them.
+    pub plain: u64,
     /// How many cells before these are refined.
     pub before: u32,
     /// Zero.
@@ -130,6 +133,49 @@ pub(crate) fn product(dims: [u32; 3]) -> usize {
         .fold(1, |count: usize, &n| count.saturating_mul(n as usize))
 }
 
+/// Marks the plain cells of a grid of `dims` voxels in groups that say which cells are refined.
+///
+/// # Panics
+/// If there are fewer groups than for all cells.
+pub fn mark_plain(dims: [u32; 3], groups: &mut [CellGroup]) {
+    for_each_cell(dims, |cell, index| {
+        let bit = u64::from(is_plain(dims, groups, cell)) << (index % 64);
+        let plain = &mut groups[index / 64].plain;
+        *plain = *plain & !(1 << (index % 64)) | bit;
+    });
+}
+
+/// All cells with their positions among them.
+fn for_each_cell(dims: [u32; 3], mut visit: impl FnMut([u32; 3], usize)) {
+    let cell_dims = cell_dims(dims);
+    let mut index = 0;
+    for z in 0..cell_dims[2] {
+        for y in 0..cell_dims[1] {
+            for x in 0..cell_dims[0] {
+                visit([x, y, z], index);
+                index += 1;
+            }
+        }
+    }
+}
+
+/// Whether neither a cell nor one of the next ones is refined.
+fn is_plain(dims: [u32; 3], groups: &[CellGroup], cell: [u32; 3]) -> bool {
+    let cell_dims = cell_dims(dims);
+    let last = |axis: usize| (cell[axis] + 1).min(cell_dims[axis] - 1);
+    for z in cell[2]..=last(2) {
+        for y in cell[1]..=last(1) {
+            for x in cell[0]..=last(0) {
+                let index = linear(cell_dims, [x, y, z]);
+                if groups[index / 64].refined >> (index % 64) & 1 == 1 {
+                    return false;
+                }
+            }
+        }
+    }
+    true
+}
+
 impl<'a> Store<'a> {
     /// A value for each of `dims` voxels.
     ///
@@ -164,12 +210,18 @@ impl<'a> Store<'a> {
         for (i, group) in groups.iter().enumerate() {
             let here = (cell_count - 64 * i).min(64);
             let beyond = if here == 64 { 0 } else { !0 << here };
-            if group.before as usize != refined || group.refined & beyond != 0 {
+            let bits = group.refined | group.plain;
+            if group.before as usize != refined || bits & beyond != 0 {
                 return Err(VoxelmapError::Cells);
             }
             refined += group.refined.count_ones() as usize;
         }
-        if cells.len() != refined {
+        let mut marked = true;
+        for_each_cell(dims, |cell, index| {
+            let is_marked = groups[index / 64].plain >> (index % 64) & 1 == 1;
+            marked &= is_marked == is_plain(dims, &groups, cell);
+        });
+        if cells.len() != refined || !marked {
             return Err(VoxelmapError::Cells);
         }
         let mut stored = 0_usize;
@@ -336,21 +388,12 @@ impl<T: Value> Reader<'_, T> {
     #[inline(always)]
     fn interpolated(&self, corners: Voxels, t: Vectors) -> (f32x4, Vectors) {
         match self.layout {
-            Layout::Dense => {
-                let [a, b, c, d] = corners.linear(self.dims).map(|first| first as usize);
-                let [_, y, z, yz] = row_offsets(self.dims).map(|offset| offset as usize);
-                let row = |offset: usize| {
-                    T::unzip([
-                        self.pair(a + offset),
-                        self.pair(b + offset),
-                        self.pair(c + offset),
-                        self.pair(d + offset),
-                    ])
-                };
-                Eight::of([row(0), row(y), row(z), row(yz)]).interpolated(t)
-            }
+            Layout::Dense => self.at_rows(corners, self.dims, t),
             Layout::Sparse(sparse) => {
                 let parts = sparse.parts();
+                if let Some(found) = self.in_lattice(parts, corners, t) {
+                    return found;
+                }
                 let mut rows = [[T::Pair::zeroed(); LANES]; 4];
                 // Values that lie further apart than voxels, and where between them.
                 let mut between = Points::from(t);
@@ -394,6 +437,44 @@ impl<T: Value> Reader<'_, T> {
         T::pair(self.values, first)
     }
 
+    /// The same if all the voxels around are interpolated in the lattice.
+    #[inline(always)]
+    fn in_lattice(
+        &self,
+        parts: Parts<'_>,
+        corners: Voxels,
+        t: Vectors,
+    ) -> Option<(f32x4, Vectors)> {
+        let cells = corners.blocks(CELL.ilog2() as i32);
+        for cell in cells.linear(parts.cell_dims) {
+            if parts.groups[cell as usize / 64].plain >> (cell % 64) & 1 == 0 {
+                return None;
+            }
+        }
+        let [nx, ny, nz] = parts.cell_dims;
+        let dims = [nx + 1, ny + 1, nz + 1];
+        let step = 1.0 / CELL as f32;
+        let within = corners.within(CELL as i32 - 1);
+        let (value, slope) = self.at_rows(cells, dims, within.plus(t).times(f32x4::splat(step)));
+        Some((value, slope.times(f32x4::splat(step))))
+    }
+
+    /// Interpolation in an array of `dims` values.
+    #[inline(always)]
+    fn at_rows(&self, corners: Voxels, dims: [u32; 3], t: Vectors) -> (f32x4, Vectors) {
+        let [a, b, c, d] = corners.linear(dims).map(|first| first as usize);
+        let [_, y, z, yz] = row_offsets(dims).map(|offset| offset as usize);
+        let row = |offset: usize| {
+            T::unzip([
+                self.pair(a + offset),
+                self.pair(b + offset),
+                self.pair(c + offset),
+                self.pair(d + offset),
+            ])
+        };
+        Eight::of([row(0), row(y), row(z), row(yz)]).interpolated(t)
+    }
+
     /// What a sparse store has around the voxel `corner` and its next neighbours.
     #[inline(always)]
     fn around(&self, parts: Parts<'_>, corner: [u32; 3]) -> Around<T::Pair> {
@@ -404,24 +485,24 @@ impl<T: Value> Reader<'_, T> {
             (y % CELL) as usize,
             (z % CELL) as usize,
         ];
+        // Behind a face lie values of the lattice, up to which this cell reaches.
+        if parts.is_plain(cell) {
+            return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
+        }
         let last = CELL as usize - 1;
         let crosses = [local[0] == last, local[1] == last, local[2] == last];
         let in_cell = !(crosses[0] | crosses[1] | crosses[2]);
         let refined = parts.refined(cell);
-        match refined {
-            // Behind a face lie values of the lattice, up to which this cell reaches.
-            None if in_cell || parts.none_refined(cell, crosses) => {
+        if in_cell {
+            let Some(number) = refined else {
                 return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
+            };
+            if let Some(rows) = self.all_stored(parts, number, local) {
+                return Around::Rows(rows);
             }
-            Some(number) if in_cell => {
-                if let Some(rows) = self.all_stored(parts, number, local) {
-                    return Around::Rows(rows);
-                }
-                if let Some(octant) = self.octant_alone(parts, number, local) {
-                    return octant;
-                }
+            if let Some(octant) = self.octant_alone(parts, number, local) {
+                return octant;
             }
-            _ => {}
         }
         self.one_by_one(parts, cell, refined, local, crosses)
     }
@@ -746,21 +827,11 @@ impl Parts<'_> {
         Some(self.bricks + (cell.first + before) as usize * BRICK_VALUES + within)
     }
 
-    /// Whether no cell next to this one behind the crossed faces, edges or corner is refined.
+    /// Whether neither this cell nor one of the next ones is refined.
     #[inline(always)]
-    fn none_refined(&self, cell: [u32; 3], crosses: [bool; 3]) -> bool {
-        let up_to = |a: usize| cell[a] + u32::from(crosses[a]);
-        for z in cell[2]..=up_to(2) {
-            for y in cell[1]..=up_to(1) {
-                for x in cell[0]..=up_to(0) {
-                    let index = linear(self.cell_dims, [x, y, z]);
-                    if self.groups[index / 64].refined >> (index % 64) & 1 == 1 {
-                        return false;
-                    }
-                }
-            }
-        }
-        true
+    fn is_plain(&self, cell: [u32; 3]) -> bool {
+        let index = linear(self.cell_dims, cell);
+        self.groups[index / 64].plain >> (index % 64) & 1 == 1
     }
 
     /// The number of a cell among the refined ones, if it is one of them.
@@ -813,10 +884,12 @@ mod tests {
     /// Three by two by one cells; the second and the last are refined, and in the latter two
     /// bricks are stored.
     fn store(values: Vec<i16>) -> Result<Store<'static>, VoxelmapError> {
-        let groups = vec![CellGroup {
+        let mut groups = vec![CellGroup {
             refined: 0b10_0010,
             ..CellGroup::default()
         }];
+        mark_plain(DIMS, &mut groups);
+        assert_eq!(groups[0].plain, 0b001000);
         let cells = vec![
             RefinedCell::default(),
             RefinedCell {
@@ -902,10 +975,14 @@ mod tests {
                 Err(VoxelmapError::Cells)
             )
         };
-        let group = |refined, before| CellGroup {
-            refined,
-            before,
-            reserved: 0,
+        let group = |refined, before| {
+            let mut group = [CellGroup {
+                refined,
+                before,
+                ..CellGroup::default()
+            }];
+            mark_plain(DIMS, &mut group);
+            group[0]
         };
         let cell = |bricks, first| RefinedCell {
             bricks,
