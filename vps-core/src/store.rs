@@ -504,64 +504,45 @@ impl<T: Value> Reader<'_, T> {
                 return octant;
             }
         }
-        self.one_by_one(parts, cell, refined, local, crosses)
+        self.by_cells(parts, cell, local, crosses)
     }
 
     /// Voxels on both sides of a face between cells, or around an edge or a corner; or some stored
-    /// and some not.
+    /// and some not. Cell by cell: voxel i of the eight is the next one along the axes of its bits.
     #[inline(always)]
-    fn one_by_one(
+    fn by_cells(
         &self,
         parts: Parts<'_>,
         cell: [u32; 3],
-        refined: Option<usize>,
         local: [usize; 3],
         crosses: [bool; 3],
     ) -> Around<T::Pair> {
-        // The numbers of the cells, by the faces that lie between.
-        let mut numbers = [refined; 8];
-        let mut stored = [T::zeroed(); 8];
-        let mut all_stored = true;
-        let neighbour = |i: usize| {
-            let mut at = (cell, local);
+        let crossed = (0..3).fold(0, |bits, a| bits | usize::from(crosses[a]) << a);
+        let mut values = [0.0; 8];
+        for bits in (0..8_usize).filter(|bits| bits & !crossed == 0) {
+            let (mut its_cell, mut first) = (cell, local);
             for a in 0..3 {
-                if i >> a & 1 == 1 {
-                    at.0[a] += u32::from(crosses[a]);
-                    at.1[a] = if crosses[a] { 0 } else { local[a] + 1 };
+                if bits >> a & 1 == 1 {
+                    its_cell[a] += 1;
+                    first[a] = 0;
                 }
             }
-            at
-        };
-        for i in 0..8 {
-            let (its_cell, its_local) = neighbour(i);
-            // The cell of the neighbour one step back along the last axis, unless a face lies
-            // between.
-            if let Some(last) = (0..3).rev().find(|&a| i >> a & 1 == 1) {
-                numbers[i] = if crosses[last] {
-                    parts.refined(its_cell)
-                } else {
-                    numbers[i & !(1 << last)]
-                };
+            let refined = parts.refined(its_cell);
+            let (rows, size) = match refined {
+                None => (self.lattice(parts, its_cell), CELL as usize),
+                Some(number) => {
+                    let half = CELL as usize / 2;
+                    let [x, y, z] = first.map(|l| l / half);
+                    (self.octant(parts, number, [x, y, z]), half)
+                }
+            };
+            let interpolated = between::<T>(rows, first.map(|l| l % size), crosses, size);
+            for i in (0..8).filter(|i| i & crossed == bits) {
+                let step = |a: usize| i >> a & 1 & usize::from(!crosses[a]);
+                let at = [first[0] + step(0), first[1] + step(1), first[2] + step(2)];
+                let stored = refined.and_then(|number| parts.brick(number, at));
+                values[i] = stored.map_or(interpolated[i], |index| self.get(index));
             }
-            let brick = numbers[i].and_then(|n| parts.brick(n, its_local));
-            match brick {
-                Some(index) => stored[i] = self.values[index],
-                None => all_stored = false,
-            }
-        }
-        if all_stored {
-            let [a, b, c, d, e, f, g, h] = stored;
-            return Around::Rows([
-                T::pair_of(a, b),
-                T::pair_of(c, d),
-                T::pair_of(e, f),
-                T::pair_of(g, h),
-            ]);
-        }
-        let mut values = [0.0; 8];
-        for (i, value) in values.iter_mut().enumerate() {
-            let (its_cell, its_local) = neighbour(i);
-            *value = self.value_in(parts, its_cell, numbers[i], its_local);
         }
         Around::Mixed(values)
     }
@@ -859,6 +840,31 @@ fn linear(dims: [u32; 3], at: [u32; 3]) -> usize {
 #[inline(always)]
 fn row_offsets([nx, ny, _]: [u32; 3]) -> [u32; 4] {
     [0, nx, nx * ny, nx * ny + nx]
+}
+
+/// What the values at the corners of a cube of `size` voxels make of one of them and of the next
+/// ones, but for those behind faces that are crossed.
+#[inline(always)]
+fn between<T: Value>(
+    corners: [T::Pair; 4],
+    first: [usize; 3],
+    crosses: [bool; 3],
+    size: usize,
+) -> [f32; 8] {
+    let size = size as f32;
+    let t = |axis: usize, next: [f32; LANES]| {
+        let next = if crosses[axis] { [0.0; LANES] } else { next };
+        (f32x4::new(next) + first[axis] as f32) / size
+    };
+    let (x, y) = (t(0, [0.0, 1.0, 0.0, 1.0]), t(1, [0.0, 0.0, 1.0, 1.0]));
+    let lerp = |a: f32x4, b: f32x4, t: f32x4| a + (b - a) * t;
+    let row = |i: usize| {
+        let [a, b] = T::of_pair(corners[i]);
+        lerp(f32x4::splat(a), f32x4::splat(b), x)
+    };
+    let (low, high) = (lerp(row(0), row(1), y), lerp(row(2), row(3), y));
+    let plane = |next: f32| lerp(low, high, t(2, [next; LANES]));
+    bytemuck::cast([plane(0.0), plane(1.0)])
 }
 
 /// Trilinear interpolation of a single point.
