@@ -188,6 +188,7 @@ impl<V: FnMut(Contact)> All<V> {
 
 impl<V: FnMut(Contact)> Goal for All<V> {
     const BEST_FIRST: bool = false;
+    const ALL: bool = true;
 
     #[inline(always)]
     fn least_penetration(&self) -> f32 {

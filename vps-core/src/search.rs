@@ -14,6 +14,10 @@ pub(crate) trait Goal {
     /// the first one is, and contacts come in the order of the points.
     const BEST_FIRST: bool;
 
+    /// Whether it is all contacts that matter, and no bound is asked for. What is likely to be in the
+    /// field as a whole is then looked at without bounding its parts first.
+    const ALL: bool = false;
+
     /// The highest score any contact in a disc (in the shell frame) can have, given upper bounds
     /// of the penetrations.
     fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
@@ -62,6 +66,15 @@ impl Frame {
             end: start + range.1,
             ..Self::EMPTY
         }
+    }
+
+    /// Gives the next children the bound of their parent.
+    #[inline(always)]
+    fn inherit(&mut self, bound: f32) {
+        let count = (self.end - self.next).min(LANES as u32);
+        self.first = self.next;
+        self.next += count;
+        self.bounds = below(count).select(f32x4::splat(bound), Self::EMPTY.bounds);
     }
 
     /// The next child whose bound is not below `least`, and its bound.
@@ -155,7 +168,11 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 let range = (cluster.first, cluster.first + cluster.count);
                 let mut frame = Frame::of(starts[at], range);
                 at += 1;
-                self.fill(clusters, &mut frame, goal);
+                if G::ALL && bound - goal.least() > 2.0 * cluster.radius {
+                    frame.inherit(bound);
+                } else {
+                    self.fill(clusters, &mut frame, goal);
+                }
                 frames[at] = frame;
             }
         }

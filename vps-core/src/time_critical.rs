@@ -1,7 +1,7 @@
 use glamx::Vec3;
 
 use crate::dispatch::dispatch;
-use crate::query::{All, Deepest, TOP};
+use crate::query::{Deepest, TOP};
 use crate::search::{Found, Goal};
 use crate::work::CountWork;
 use crate::wrench::Sum;
@@ -44,7 +44,11 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             is_complete: false,
         };
         let mut tested = 0;
-        let mut every = All::new(self.margin, |_| ());
+        let mut points = Points {
+            margin: self.margin,
+            sum: Sum::new(self.tree, center, Weight::Area, -self.margin),
+            deepest: Deepest::new(self.margin),
+        };
         for level in 1..=self.tree.level_count() {
             let clusters = self.tree.level(level);
             let mut pass = Pass::default();
@@ -66,7 +70,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             };
             dispatch(
                 #[inline(always)]
-                || self.descend((1, TOP), level, &mut every, &mut test),
+                || self.descend((1, TOP), level, &mut points, &mut test),
             );
             if stopped {
                 return estimate;
@@ -81,11 +85,6 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         }
         let leaf_level = self.tree.level_count();
         let leaves = self.tree.level(leaf_level);
-        let mut points = Points {
-            margin: self.margin,
-            sum: Sum::new(self.tree, center, Weight::Area, -self.margin),
-            deepest: Deepest::new(self.margin),
-        };
         points.deepest.found = estimate.deepest;
         let mut stopped = false;
         let mut test = |leaf: u32, _: f32, points: &mut Points<'_>| {

@@ -96,6 +96,7 @@ impl<'q> Sum<'q> {
 
 impl Goal for Sum<'_> {
     const BEST_FIRST: bool = false;
+    const ALL: bool = true;
 
     #[inline(always)]
     fn least_penetration(&self) -> f32 {
