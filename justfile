@@ -56,6 +56,10 @@ builder-report: fetch
 query-report: fetch
     cargo bench --locked -p vps-compare --bench queries
 
+# Instructions and cache misses of queries, into reports/queries (needs valgrind)
+query-profile: fetch
+    cargo run --locked --release --quiet -p vps-compare --example query_profile
+
 # Random bytes for the readers and the builder, so many seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build
     for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done

@@ -1,0 +1,203 @@
+//! Instructions and cache misses of queries, counted by `valgrind --tool=callgrind`, and the table
+//! of it in `reports/queries/profile.md`. What takes part is built first: `just query-profile`.
+
+use std::fmt::Write;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use vps_build::{
+    BuildOptions, Density, Mesh, PointCount, Resolution, build, read_asset, read_mesh, write_asset,
+    write_atomically,
+};
+use vps_core::{Asset, CountWork, Cuboid, DistanceField, Pose3, Quat, Query, Vec3, Weight, Work};
+
+const POSES: u32 = 20;
+/// How often more all poses are asked in the second of two runs; the difference is what counts.
+const TIMES: u64 = 10;
+const HALF_EXTENTS: Vec3 = Vec3::new(1.0, 0.1, 1.0);
+
+const ROWS: [(&str, &str); 11] = [
+    ("deepest", "cuboid"),
+    ("deepest", "dense"),
+    ("deepest", "sparse"),
+    ("manifold of 4", "cuboid"),
+    ("manifold of 4", "dense"),
+    ("manifold of 4", "sparse"),
+    ("force and torque", "cuboid"),
+    ("force and torque", "dense"),
+    ("force and torque", "sparse"),
+    ("force and torque, all inside", "dense"),
+    ("force and torque, all inside", "sparse"),
+];
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match &arguments[..] {
+        [] => report(),
+        [query, field, times] => {
+            let times = times.parse().expect("a number");
+            run(query, field, times, None);
+        }
+        _ => panic!("no argument, or QUERY FIELD TIMES"),
+    }
+}
+
+fn file(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/query-profile");
+    std::fs::create_dir_all(&folder).expect("a place for assets");
+    folder.join(format!("{name}.vps"))
+}
+
+fn report() {
+    let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.cache/models/bunny.obj");
+    let bunny = read_mesh(&bunny, None).expect("the bunny: `just fetch` brings it");
+    let bunny = bunny.scaled(0.135).expect("a sound scale");
+    let ground = Mesh::cuboid([2.0, 0.2, 2.0]).expect("a box");
+    let around = Mesh::cuboid([0.8; 3]).expect("a box");
+    let options = |voxel_size: f64, points: u32, density: Density| BuildOptions {
+        resolution: Resolution::VoxelSize(voxel_size),
+        points: PointCount::About(points),
+        density,
+        ..BuildOptions::default()
+    };
+    let make = |name: &str, mesh: &Mesh, options: &BuildOptions| {
+        let asset = build(mesh, options, &|_| ()).expect("a sound mesh").asset;
+        write_asset(&file(name), &asset).expect("a place for assets");
+    };
+    make("bunny", &bunny, &options(0.00256, 35_596, Density::Sparse));
+    for (name, density) in [("dense", Density::Dense), ("sparse", Density::Sparse)] {
+        make(name, &ground, &options(0.005, 10, density));
+        make(
+            &format!("around_{name}"),
+            &around,
+            &options(0.005, 10, density),
+        );
+    }
+
+    let mut text = String::from(
+        "# Instructions of queries\n\n\
+         Written by `just query-profile`: counted by callgrind, a query on average. The bunny of\n\
+         35 596 points stands 1 mm deep in the ground in 20 orientations, asked 20 mm ahead. A batch\n\
+         is four spheres or points that are looked at together. Misses are those of callgrind's model\n\
+         of the caches, first level and last, when the same poses are asked again and again.\n\n\
+         | query | field | spheres | points | instructions | a batch | first-level misses | last-level misses |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (query, field) in ROWS {
+        let [less, more] = [1, 1 + TIMES].map(|times| counted(query, field, times));
+        let queries = (TIMES * u64::from(POSES)) as f64;
+        let mean = |i: usize| (more[i] as f64 - less[i] as f64).max(0.0) / queries;
+        let work = Work::default();
+        run(query, field, 1, Some(&work));
+        let [spheres, points] =
+            [work.spheres(), work.points()].map(|n| n as f64 / f64::from(POSES));
+        let instructions = mean(0);
+        writeln!(
+            text,
+            "| {query} | {field} | {spheres:.0} | {points:.0} | {instructions:.0} | {:.0} | {:.0} | {:.0} |",
+            4.0 * instructions / (spheres + points),
+            mean(3) + mean(4) + mean(5),
+            mean(6) + mean(7) + mean(8),
+        )
+        .expect("memory");
+    }
+    print!("{text}");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reports/queries/profile.md");
+    write_atomically(&file, text.as_bytes()).expect("a place for the report");
+}
+
+/// What callgrind counts: instructions, reads, writes, and misses of these three in the first and in
+/// the last level.
+fn counted(query: &str, field: &str, times: u64) -> Vec<u64> {
+    let this = std::env::current_exe().expect("a program");
+    let output = Command::new("valgrind")
+        .args([
+            "--tool=callgrind",
+            "--cache-sim=yes",
+            "--callgrind-out-file=/dev/null",
+        ])
+        .arg(this)
+        .args([query, field, &times.to_string()])
+        .output()
+        .expect("valgrind is installed");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let line = said
+        .lines()
+        .find_map(|line| line.split_once("Collected : "));
+    let (_, counts) = line.unwrap_or_else(|| panic!("valgrind failed: {said}"));
+    let counts = counts.split_whitespace();
+    counts.map(|n| n.parse().expect("a count")).collect()
+}
+
+/// Asks all poses so many times.
+fn run(query: &str, field: &str, times: u64, work: Option<&Work>) {
+    let shell = read_asset(&file("bunny")).expect("an asset");
+    let (query, is_inside) = match query.strip_suffix(", all inside") {
+        Some(query) => (query, true),
+        None => (query, false),
+    };
+    if field == "cuboid" {
+        return ask(
+            query,
+            &shell,
+            &Cuboid::new(HALF_EXTENTS),
+            is_inside,
+            times,
+            work,
+        );
+    }
+    let name = if is_inside {
+        format!("around_{field}")
+    } else {
+        field.into()
+    };
+    let asset = read_asset(&file(&name)).expect("an asset");
+    ask(
+        query,
+        &shell,
+        &asset.voxelmap.trilinear(),
+        is_inside,
+        times,
+        work,
+    );
+}
+
+fn ask<F: DistanceField>(
+    query: &str,
+    shell: &Asset<'_>,
+    field: &F,
+    is_inside: bool,
+    times: u64,
+    work: Option<&Work>,
+) {
+    let (tree, center) = (&shell.tree, shell.mass.center());
+    for pose in 0..POSES {
+        // By the golden angle from pose to pose.
+        let turn = Quat::from_scaled_axis(Vec3::new(1.0, 0.5, 0.3) * (2.4 * pose as f32));
+        let mut pose = Pose3::from_parts(-(turn * center), turn);
+        if !is_inside {
+            let low = tree
+                .points()
+                .iter()
+                .map(|&p| pose.transform_point(p.into()).y);
+            pose.translation.y += HALF_EXTENTS.y - 0.001 - low.fold(f32::INFINITY, f32::min);
+        }
+        let margin = if is_inside { 0.0 } else { 0.02 };
+        let asked = Query::new(tree, field, pose).with_margin(margin);
+        for _ in 0..times {
+            match work {
+                None => answer(query, &asked),
+                Some(work) => answer(query, &asked.counting(work)),
+            }
+        }
+    }
+}
+
+fn answer<F: DistanceField, W: CountWork + Copy>(name: &str, query: &Query<'_, F, W>) {
+    match name {
+        "deepest" => _ = black_box(query.deepest()),
+        "manifold of 4" => _ = black_box(query.manifold::<4>()),
+        _ => _ = black_box(query.wrench(Vec3::ZERO, Weight::Area)),
+    }
+}
