@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vps_build::{BuildOptions, Density, Mesh, PointCount, Resolution, mass_properties, read_mesh};
+use vps_build::{BuildOptions, Mesh, PointCount, Resolution, mass_properties, read_mesh};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
     AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
@@ -168,8 +168,6 @@ fn vps<'a>(settings: &config::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
             margin: settings.ground_margin.unwrap_or(4),
             // It is never the shell.
             points: PointCount::About(100),
-            // It is the map that is asked, and a dense one answers in half of the time.
-            density: Density::Dense,
             ..BuildOptions::default()
         }),
         None => VpsGround::Cuboid,

@@ -35,7 +35,7 @@ fn main() {
     let mut table = Table::default();
     let bunny = bunny();
     let [fine, coarse] = [FINE, COARSE].map(|points| shell(&bunny, points));
-    let poses = rolling(&bunny, &coarse);
+    let poses = rolling(&bunny, &fine);
     ground(&mut criterion, &mut table, &bunny, [&fine, &coarse], &poses);
     core(&mut criterion, &mut table, &fine, &poses);
     interlocked(&mut criterion, &mut table, &bunny, &fine);
@@ -102,7 +102,7 @@ fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared 
     vps.prepare(&scene).expect("a sound scene")
 }
 
-/// Poses of a bunny that fell on the ground: in ten runs from different starts, five steps one after
+/// Poses of a bunny that fell on the ground, as VPS has it: in ten runs from different starts, five steps one after
 /// the other at 1.5 and at 2.5 seconds, as bodies of the ground's frame.
 fn rolling(mesh: &Mesh, shell: &Arc<Asset<'static>>) -> Vec<Pose> {
     let prepared = vps(mesh, shell, VpsGround::Cuboid);
