@@ -102,6 +102,10 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// One search finds the deepest contact and those that count enough; should they be more than
     /// 512, or too few, each further contact is searched for by itself.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
+        // Most bodies of a scene are apart; for them not even a place to keep contacts is made.
+        if !self.may_touch() {
+            return ContactManifold::EMPTY;
+        }
         let mut near = Near::new(self.margin);
         dispatch(
             #[inline(always)]

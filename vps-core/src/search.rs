@@ -2,6 +2,7 @@
 
 use wide::f32x4;
 
+use crate::dispatch::dispatch;
 use crate::lanes::Vectors;
 use crate::query::Query;
 use crate::tree::{Cluster, MAX_LEVELS};
@@ -190,6 +191,16 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         // What is no number is below everything, and so are the lanes that are not in use.
         let counts = below(count) & bounds.simd_eq(bounds);
         frame.bounds = counts.select(bounds, f32x4::splat(f32::NEG_INFINITY));
+    }
+
+    /// Whether there may be a contact, by a look at the cluster of all points.
+    pub(crate) fn may_touch(&self) -> bool {
+        let top = &self.tree.clusters()[..1];
+        self.is_posed
+            && dispatch(
+                #[inline(always)]
+                || self.bounds_of(top).1[0] >= -self.margin,
+            )
     }
 
     /// The discs of the first [`LANES`] clusters in the shell frame, and bounds of the penetration in
