@@ -25,6 +25,16 @@ pub enum Violation {
         /// Its penetration.
         penetration: f32,
     },
+    /// A disc has a higher bound than the ball around it.
+    #[error("the disc around {center} has bound {disc} m, the ball {ball} m")]
+    Disc {
+        /// Its centre.
+        center: Vec3,
+        /// Its bound.
+        disc: f32,
+        /// That of the ball.
+        ball: f32,
+    },
     /// Several points at a time have other penetrations than one by one.
     #[error("{point} has penetration {alone} m alone, but {together} m with others")]
     Lanes {
@@ -109,6 +119,11 @@ pub fn check(
                 point,
                 penetration,
             });
+        }
+    }
+    for disc in bounds {
+        if disc > ball + rounding {
+            return Err(Violation::Disc { center, disc, ball });
         }
     }
     let mut points = Points::splat(center);

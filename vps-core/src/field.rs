@@ -43,7 +43,8 @@ pub trait DistanceField {
         core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
     }
 
-    /// Upper bounds on the [`penetration`](Self::penetration) in several pieces. A field that knows
+    /// Upper bounds on the [`penetration`](Self::penetration) in several pieces, each at most the
+    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field that knows
     /// how it bends can use how flat a piece is, and which way it is bent; others take the balls
     /// around them.
     #[inline(always)]

@@ -359,8 +359,10 @@ impl Discs {
         let bend = across * f32x4::new(self.bulges);
         let before = radii.fast_min(along / (bend * -2.0));
         let r = bend.simd_lt(f32x4::ZERO).select(before, radii);
-        across * f32x4::new(self.lifts)
+        let on_dish = across * f32x4::new(self.lifts)
             + across.abs() * f32x4::new(self.thickness)
-            + r * (along + bend * r)
+            + r * (along + bend * r);
+        // Never more than in the ball around.
+        on_dish.fast_min(gradients.length() * radii)
     }
 }

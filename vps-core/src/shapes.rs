@@ -51,8 +51,7 @@ impl<S: Convex> DistanceField for S {
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         let (penetrations, gradients) = self.sample(discs.centers.into());
-        let rise = discs.rise(gradients).fast_min(f32x4::new(discs.radii));
-        (penetrations + rise).to_array()
+        (penetrations + discs.rise(gradients)).to_array()
     }
 }
 
