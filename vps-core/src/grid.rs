@@ -7,12 +7,14 @@ use crate::lanes::{Vectors, Voxels};
 /// A regular grid of cubical voxels (section 2.1.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    origin: Vec3,
     voxel_size: f32,
     per_metre: f32,
     dims: [u32; 3],
-    /// Kept, since every query asks for it at every point.
+    bounds: Aabb,
+    // The rest is kept because every query asks for it at every point.
     center_bounds: Aabb,
+    /// Along each axis the last voxel with a next one.
+    last_corner: Vec3,
 }
 
 /// Why a [`Grid`] was refused.
@@ -48,28 +50,28 @@ impl Grid {
         if voxels == 0 || voxels > 1 << 31 || dims.iter().any(|&n| n > 1 << 23) {
             return Err(GridError::Dims(dims[0], dims[1], dims[2]));
         }
-        let mut grid = Self {
-            origin,
+        let counts = Vec3::from_array(dims.map(|n| n as f32));
+        let (end, half) = (origin + counts * voxel_size, Vec3::splat(0.5 * voxel_size));
+        Ok(Self {
             voxel_size,
             per_metre: voxel_size.recip(),
             dims,
-            center_bounds: Aabb {
+            bounds: Aabb {
                 min: origin,
-                max: origin,
+                max: end,
             },
-        };
-        let (bounds, half) = (grid.bounds(), Vec3::splat(0.5 * voxel_size));
-        grid.center_bounds = Aabb {
-            min: bounds.min + half,
-            max: bounds.max - half,
-        };
-        Ok(grid)
+            center_bounds: Aabb {
+                min: origin + half,
+                max: end - half,
+            },
+            last_corner: (counts - 2.0).max(Vec3::ZERO),
+        })
     }
 
     /// The lowest corner of the grid, in metres in the field frame.
     #[inline]
     pub fn origin(&self) -> Vec3 {
-        self.origin
+        self.bounds.min
     }
 
     /// Edge length s of a voxel in metres.
@@ -98,12 +100,7 @@ impl Grid {
     /// The box the voxels fill.
     #[inline]
     pub fn bounds(&self) -> Aabb {
-        let [nx, ny, nz] = self.dims;
-        let dims = Vec3::new(nx as f32, ny as f32, nz as f32);
-        Aabb {
-            min: self.origin,
-            max: self.origin + dims * self.voxel_size,
-        }
+        self.bounds
     }
 
     /// Position of a voxel in an array of all voxels: x runs fastest, then y, then z.
@@ -119,13 +116,13 @@ impl Grid {
     pub fn center(&self, voxel: [u32; 3]) -> Vec3 {
         let [x, y, z] = voxel;
         let voxel = Vec3::new(x as f32, y as f32, z as f32);
-        self.origin + (voxel + 0.5) * self.voxel_size
+        self.origin() + (voxel + 0.5) * self.voxel_size
     }
 
     /// The voxel that holds `point`, or the closest one for a point outside of the grid.
     #[inline]
     pub fn voxel_at(&self, point: Vec3) -> [u32; 3] {
-        self.clamped((point - self.origin) * self.per_metre)
+        self.clamped((point - self.origin()) * self.per_metre)
     }
 
     /// The box between the outermost voxel centres, half a voxel smaller than the grid.
@@ -140,10 +137,11 @@ impl Grid {
     #[inline(always)]
     pub(crate) fn cells_at(&self, points: Vectors) -> (Voxels, Vectors) {
         let axis = |axis: usize, coordinates: f32x4| {
-            let last = self.dims[axis].saturating_sub(2) as f32;
-            let at = (coordinates - self.origin[axis]) * self.per_metre - 0.5;
+            let at = (coordinates - self.bounds.min[axis]) * self.per_metre - 0.5;
             // From -0.5 on, and so from voxel 0 on.
-            let corner = at.fast_min(f32x4::splat(last)).fast_trunc_int();
+            let corner = at
+                .fast_min(f32x4::splat(self.last_corner[axis]))
+                .fast_trunc_int();
             (corner, at - corner.round_float())
         };
         let ((x, u), (y, v), (z, w)) = (axis(0, points.x), axis(1, points.y), axis(2, points.z));

@@ -57,17 +57,15 @@ impl Points {
     /// If there is none.
     #[inline(always)]
     pub fn read(points: &[[f32; 3]], first: usize) -> Self {
-        let [a, b, c, d] = padded(&points[first..]);
-        Self {
-            x: [a[0], b[0], c[0], d[0]],
-            y: [a[1], b[1], c[1], d[1]],
-            z: [a[2], b[2], c[2], d[2]],
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, point: Vec3) {
-        (self.x[lane], self.y[lane], self.z[lane]) = (point.x, point.y, point.z);
+        padded(
+            &points[first..],
+            #[inline(always)]
+            |[a, b, c, d]| Self {
+                x: [a[0], b[0], c[0], d[0]],
+                y: [a[1], b[1], c[1], d[1]],
+                z: [a[2], b[2], c[2], d[2]],
+            },
+        )
     }
 
     /// The point of a lane.
@@ -77,13 +75,19 @@ impl Points {
     }
 }
 
-/// The first of `all` (one at least); should there be fewer than lanes, the last is repeated.
+/// What `read` makes of the first of `all` (one at least); should there be fewer than lanes, the last
+/// is repeated.
 #[inline(always)]
-pub(crate) fn padded<T: Copy>(all: &[T]) -> [T; LANES] {
-    match all.first_chunk() {
-        Some(&first) => first,
-        None => fewer(all),
-    }
+pub(crate) fn padded<T: Copy, R>(all: &[T], read: impl FnOnce(&[T; LANES]) -> R) -> R {
+    // By reference and in one place: copied, or read in two places, it takes twice the time.
+    let copy;
+    read(match all.first_chunk() {
+        Some(first) => first,
+        None => {
+            copy = fewer(all);
+            &copy
+        }
+    })
 }
 
 #[cold]
@@ -91,6 +95,29 @@ fn fewer<T: Copy>(all: &[T]) -> [T; LANES] {
     let mut first = [all[all.len() - 1]; LANES];
     first[..all.len()].copy_from_slice(all);
     first
+}
+
+/// The first `count` lanes as a mask.
+#[inline(always)]
+pub(crate) fn first_lanes(count: u32) -> f32x4 {
+    f32x4::new([0.0, 1.0, 2.0, 3.0]).simd_lt(f32x4::splat(count as f32))
+}
+
+/// The lanes of a mask, from the first on.
+#[inline(always)]
+pub(crate) fn lanes_in(mask: f32x4) -> impl Iterator<Item = usize> {
+    let mut lanes = mask.to_bitmask();
+    core::iter::from_fn(
+        #[inline(always)]
+        move || {
+            if lanes == 0 {
+                return None;
+            }
+            let lane = lanes.trailing_zeros() as usize % LANES;
+            lanes &= lanes - 1;
+            Some(lane)
+        },
+    )
 }
 
 /// Vectors in registers.
@@ -280,16 +307,15 @@ pub(crate) struct Voxels {
 impl Voxels {
     /// Positions in an array of `dims` values, x fastest, then y, then z.
     #[inline(always)]
-    pub(crate) fn linear(self, dims: [u32; 3]) -> [u32; LANES] {
-        let [nx, ny] = [dims[0] as i32, dims[1] as i32];
-        let (x, y, z): ([i32; LANES], [i32; LANES], [i32; LANES]) =
-            (self.x.to_array(), self.y.to_array(), self.z.to_array());
-        let mut linear = [0; LANES];
-        for lane in 0..LANES {
-            let row = z[lane].wrapping_mul(ny).wrapping_add(y[lane]);
-            linear[lane] = row.wrapping_mul(nx).wrapping_add(x[lane]) as u32;
-        }
-        linear
+    pub(crate) fn linear(self, dims: [u32; 3]) -> [usize; LANES] {
+        let [nx, ny] = [i32x4::splat(dims[0] as i32), i32x4::splat(dims[1] as i32)];
+        let [a, b, c, d] = ((self.z * ny + self.y) * nx + self.x).to_array();
+        [
+            a as u32 as usize,
+            b as u32 as usize,
+            c as u32 as usize,
+            d as u32 as usize,
+        ]
     }
 
     /// The blocks of `1 << bits` voxels along each axis they lie in.
@@ -347,10 +373,10 @@ impl Discs {
         }
     }
 
-    /// How much more than at its centre a linear function with the given gradients (per metre) is
-    /// in a piece at most.
+    /// How much more than at its centre a linear function with the given gradients (per metre),
+    /// none longer than `steepest`, is in a piece at most.
     #[inline(always)]
-    pub(crate) fn rise(&self, gradients: Vectors) -> f32x4 {
+    pub(crate) fn rise(&self, gradients: Vectors, steepest: f32x4) -> f32x4 {
         let normals = Vectors::from(self.normals);
         let radii = f32x4::new(self.radii);
         let across = gradients.dot(normals);
@@ -363,6 +389,6 @@ impl Discs {
             + across.abs() * f32x4::new(self.thickness)
             + r * (along + bend * r);
         // Never more than in the ball around.
-        on_dish.fast_min(gradients.length() * radii)
+        on_dish.fast_min(steepest * radii)
     }
 }

@@ -2,11 +2,11 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::dispatch::dispatch;
-use crate::lanes::{LANES, Vectors};
+use crate::lanes::{Vectors, lanes_in};
 use crate::query::TOP;
 use crate::search::{Found, Goal};
 use crate::work::CountWork;
-use crate::{Contact, Discs, DistanceField, PointSphereTree, Points, Query};
+use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
 
 /// At which fraction of the margin outside of the solid a contact counts half.
 const CLOSE: f32 = 0.01;
@@ -99,8 +99,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// The manifold of the contact set, its area seen along the field's normal at the deepest
     /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
     ///
-    /// One search finds the deepest contact and those that count enough; should they be more than
-    /// 512, or too few, each further contact is searched for by itself.
+    /// One search finds the deepest contact and those that count enough; should there be too many
+    /// to keep on the stack, or too few, each further contact is searched for by itself.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
         // Most bodies of a scene are apart; for them not even a place to keep contacts is made.
         if !self.may_touch() {
@@ -109,8 +109,9 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         let mut near = Near::new(self.margin);
         dispatch(
             #[inline(always)]
-            || self.search(1, TOP, &mut near),
+            || self.search(TOP, &mut near),
         );
+        near.drop_shallow();
         ContactManifold::pick(
             || near.deepest,
             |deepest| {
@@ -142,8 +143,18 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     }
 }
 
-/// How many contacts are kept for the manifold, on the stack.
-const KEPT: usize = 512;
+/// How many groups of contacts are kept for the manifold, on the stack.
+const KEPT: usize = 96;
+
+/// Points that were tested together.
+#[derive(Clone, Copy)]
+struct Group {
+    /// The first one's number.
+    first: u32,
+    positions: Vectors,
+    /// Minus infinity for those that do not count.
+    penetrations: f32x4,
+}
 
 /// The deepest contact, and those that count enough.
 struct Near {
@@ -151,75 +162,65 @@ struct Near {
     /// Contacts less deep are not kept.
     least: f32,
     deepest: Option<Contact>,
-    kept: [(u32, f32); KEPT],
+    kept: [Group; KEPT],
     len: usize,
     is_full: bool,
 }
 
 impl Near {
     fn new(margin: f32) -> Self {
+        let none = Group {
+            first: 0,
+            positions: Vectors::splat(Vec3::ZERO),
+            penetrations: f32x4::ZERO,
+        };
         Self {
             margin,
             least: -margin,
             deepest: None,
-            kept: [(0, 0.0); KEPT],
+            kept: [none; KEPT],
             len: 0,
             is_full: false,
         }
     }
 
-    /// Offers what was kept, several at a time.
+    /// Offers what was kept.
     #[inline(always)]
     fn offer_to<const N: usize>(&self, tree: &PointSphereTree<'_>, spread: &mut Spread<'_, N>) {
-        let points = tree.points();
-        for kept in self.kept[..self.len].chunks(LANES) {
-            let mut positions = Points::default();
-            // Lanes that are not in use count nothing.
-            let mut penetrations = [f32::NEG_INFINITY; LANES];
-            for (lane, &(point, penetration)) in kept.iter().enumerate() {
-                positions.set(lane, Vec3::from_array(points[point as usize]));
-                penetrations[lane] = penetration;
-            }
-            let scores = spread
-                .polygon
-                .scores(positions.into(), f32x4::new(penetrations));
-            let mut better = scores.simd_ge(f32x4::splat(spread.least)).to_bitmask();
-            while better != 0 {
-                let (point, penetration) = kept[better.trailing_zeros() as usize];
-                better &= better - 1;
-                spread.consider(Contact {
-                    point,
-                    position: tree.point(point as usize),
-                    normal: tree.normal(point as usize),
-                    penetration,
-                });
+        for group in &self.kept[..self.len] {
+            let scores = spread.polygon.scores(group.positions, group.penetrations);
+            let better = scores.simd_ge(f32x4::splat(spread.least));
+            for lane in lanes_in(better) {
+                let penetration = group.penetrations.to_array()[lane];
+                spread.consider(Contact::of(tree, group.first + lane as u32, penetration));
             }
         }
     }
 
     #[inline(always)]
-    fn keep(&mut self, contact: &Contact) {
-        if self.is_full {
-            return;
-        }
+    fn keep(&mut self, group: Group) {
         if self.len == KEPT {
-            // Some may have been kept before a deeper one was known.
-            let mut left = 0;
-            for i in 0..self.len {
-                if self.kept[i].1 >= self.least {
-                    self.kept[left] = self.kept[i];
-                    left += 1;
-                }
-            }
-            self.len = left;
+            self.drop_shallow();
         }
         if self.len == KEPT {
             self.is_full = true;
             self.least = self.deepest.map_or(-self.margin, |d| d.penetration);
             return;
         }
-        self.kept[self.len] = (contact.point, contact.penetration);
+        self.kept[self.len] = group;
         self.len += 1;
+    }
+
+    /// Some may have been kept before a deeper one was known.
+    #[inline(always)]
+    fn drop_shallow(&mut self) {
+        let mut left = 0;
+        for i in 0..self.len {
+            self.kept[left] = self.kept[i];
+            let counts = self.kept[i].penetrations.simd_ge(f32x4::splat(self.least));
+            left += usize::from(counts.any());
+        }
+        self.len = left;
     }
 }
 
@@ -233,7 +234,9 @@ impl Goal for Near {
 
     #[inline(always)]
     fn offer(&mut self, found: &Found<'_>) -> bool {
-        for contact in found.each() {
+        let deepest = self.deepest.map_or(f32::NEG_INFINITY, |d| d.penetration);
+        let deeper = found.counts & found.penetrations.simd_ge(f32x4::splat(deepest));
+        for contact in found.each_in(deeper) {
             if contact.is_deeper_than(self.deepest.as_ref()) {
                 self.deepest = Some(contact);
                 self.least = if self.is_full {
@@ -242,10 +245,14 @@ impl Goal for Near {
                     least_deep(contact.penetration, self.margin)
                 };
             }
-            // One found with it may be so much deeper that it matters no more.
-            if contact.penetration >= self.least {
-                self.keep(&contact);
-            }
+        }
+        if !self.is_full {
+            let none = f32x4::splat(f32::NEG_INFINITY);
+            self.keep(Group {
+                first: found.first,
+                positions: found.positions,
+                penetrations: found.counts.select(found.penetrations, none),
+            });
         }
         true
     }
@@ -350,7 +357,7 @@ impl<const N: usize> Polygon<N> {
     /// What contacts add, weighted.
     #[inline(always)]
     fn scores(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
-        self.gains(positions, f32x4::ZERO) * self.weights(penetrations)
+        self.gains(positions, |_| f32x4::ZERO) * self.weights(penetrations)
     }
 
     /// The highest score of any contact in a disc.
@@ -362,7 +369,7 @@ impl<const N: usize> Polygon<N> {
         let radii = f32x4::new(discs.radii);
         let far = centers.minus(Vectors::splat(self.corners[0])).length() + radii;
         let reach = radii + far * 1e-6;
-        self.gains(centers, reach) * self.weights(penetrations) * ROUNDED
+        self.gains(centers, |edge| reach * edge) * self.weights(penetrations) * ROUNDED
     }
 
     #[inline(always)]
@@ -373,16 +380,17 @@ impl<const N: usize> Polygon<N> {
         counts & weights
     }
 
-    /// How much points add at most that are no further than `reach` from these: a length for a
-    /// single corner, otherwise twice an area, only what lies outside of the polygon.
+    /// How much points add: a length for a single corner, otherwise twice an area, only what lies
+    /// outside of the polygon; `more` is how much more it may be beyond an edge of that length (one
+    /// for a single corner).
     #[inline(always)]
-    fn gains(&self, points: Vectors, reach: f32x4) -> f32x4 {
+    fn gains(&self, points: Vectors, more: impl Fn(f32) -> f32x4) -> f32x4 {
         if self.len == 1 {
-            return points.minus(Vectors::splat(self.corners[0])).length() + reach;
+            return points.minus(Vectors::splat(self.corners[0])).length() + more(1.0);
         }
         let mut most = f32x4::ZERO;
         for edge in 0..self.len {
-            let gain = self.beyond(edge, points) + reach * self.edge[edge];
+            let gain = self.beyond(edge, points) + more(self.edge[edge]);
             most = most.fast_max(gain);
         }
         most

@@ -20,6 +20,17 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// That of a point of a shell.
+    #[inline(always)]
+    pub(crate) fn of(tree: &PointSphereTree<'_>, point: u32, penetration: f32) -> Self {
+        Self {
+            point,
+            position: tree.point(point as usize),
+            normal: tree.normal(point as usize),
+            penetration,
+        }
+    }
+
     /// Whether it comes before another, if there is one, as the deepest: the first of equally deep
     /// ones does.
     #[inline]
@@ -151,7 +162,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     pub(crate) fn find<G: Goal>(&self, mut goal: G) -> G {
         dispatch(
             #[inline(always)]
-            || self.search(1, TOP, &mut goal),
+            || self.search(TOP, &mut goal),
         );
         goal
     }
@@ -171,8 +182,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     }
 }
 
-/// The clusters of level 1.
-pub(crate) const TOP: (u32, u32) = (0, 1);
+/// The cluster of all points: its level, and its number.
+pub(crate) const TOP: (u32, u32) = (1, 0);
 
 /// All contacts, in order.
 pub(crate) struct All<V> {

@@ -264,7 +264,7 @@ impl Trilinear<'_> {
 
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
         let way = smoothed.fast_min(radii * SQRT_3);
-        let chance = (radii * (SQRT_3 / s)).fast_min(f32x4::ONE);
+        let chance = (radii * (SQRT_3 * map.grid().per_metre())).fast_min(f32x4::ONE);
         let bound = Stored::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
         let error = bound.error_at(at_center);
         let by_way = bound.of(at_center + way + chance * error, chance);
@@ -274,13 +274,14 @@ impl Trilinear<'_> {
         let voxels = radii * map.grid().per_metre();
         let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
         let gradients = sampled.gradients;
+        let steepest = gradients.length();
         let mut bent = at_center
             + gradients.dot(sampled.off)
-            + discs.rise(gradients)
+            + discs.rise(gradients, steepest)
             + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
         let leaves = centers.room_in(&map.grid().center_bounds()).simd_lt(radii);
         if leaves.any() {
-            let steeper = (gradients.length() - 1.0).fast_max(f32x4::ZERO);
+            let steeper = (steepest - 1.0).fast_max(f32x4::ZERO);
             bent += leaves & (steeper * (sampled.outside + radii));
         }
         out = is_near.select(bent.fast_min(out), out);

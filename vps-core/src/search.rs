@@ -3,7 +3,7 @@
 use wide::f32x4;
 
 use crate::dispatch::dispatch;
-use crate::lanes::Vectors;
+use crate::lanes::{Vectors, first_lanes, lanes_in, padded};
 use crate::query::Query;
 use crate::tree::{Cluster, MAX_LEVELS};
 use crate::work::CountWork;
@@ -39,97 +39,86 @@ pub(crate) trait Goal {
     fn offer(&mut self, found: &Found<'_>) -> bool;
 }
 
-/// The children of one cluster that are still to be looked at.
+/// A cluster that is still to be looked at.
 #[derive(Clone, Copy)]
-struct Frame {
-    /// Bounds of some of them, minus infinity for those that are done with.
-    bounds: f32x4,
-    /// The first one with a bound.
-    first: u32,
-    /// Those without.
-    next: u32,
-    end: u32,
+struct Entry {
+    /// No contact below it has a higher score.
+    bound: f32,
+    /// Which of all clusters.
+    cluster: u32,
+    level: u32,
+    /// How many of its children are done with.
+    done: u32,
 }
 
-impl Frame {
+/// The clusters that are still to be looked at, the next one on top. On each level there are
+/// [`LANES`] at most: those bounded together, of which the one in work may come back for more of its
+/// children.
+struct Stack {
+    entries: [Entry; LANES * MAX_LEVELS],
+    len: usize,
+}
+
+impl Stack {
     const EMPTY: Self = Self {
-        bounds: f32x4::splat(f32::NEG_INFINITY),
-        first: 0,
-        next: 0,
-        end: 0,
+        entries: [Entry {
+            bound: 0.0,
+            cluster: 0,
+            level: 0,
+            done: 0,
+        }; LANES * MAX_LEVELS],
+        len: 0,
     };
 
-    /// Children in a range of the level that starts at a position among all clusters.
     #[inline(always)]
-    fn of(start: u32, range: (u32, u32)) -> Self {
-        Self {
-            next: start + range.0,
-            end: start + range.1,
-            ..Self::EMPTY
-        }
+    fn push(&mut self, entry: Entry) {
+        self.entries[self.len] = entry;
+        self.len += 1;
     }
 
-    /// Gives the next children the bound of their parent.
     #[inline(always)]
-    fn inherit(&mut self, bound: f32) {
-        let count = (self.end - self.next).min(LANES as u32);
-        self.first = self.next;
-        self.next += count;
-        self.bounds = below(count).select(f32x4::splat(bound), Self::EMPTY.bounds);
+    fn pop(&mut self) -> Option<Entry> {
+        self.len = self.len.checked_sub(1)?;
+        Some(self.entries[self.len])
     }
 
-    /// The next child whose bound is not below `least`, and its bound.
+    /// Pushes an entry, but below those from position `base` on that have no lower bound.
     #[inline(always)]
-    fn take(&mut self, best_first: bool, least: f32) -> Option<(u32, f32)> {
-        // Above minus infinity, whatever is asked for.
-        let least = f32x4::splat(least).fast_max(f32x4::splat(f32::MIN));
-        let mut lanes = self.bounds.simd_ge(least);
-        if best_first {
-            let [a, b, c, d] = self.bounds.to_array();
-            let max = |a: f32, b: f32| if a > b { a } else { b };
-            let most = f32x4::splat(max(max(a, b), max(c, d)));
-            lanes &= self.bounds.simd_eq(most);
+    fn insert(&mut self, base: usize, entry: Entry) {
+        let mut at = self.len;
+        while at > base && self.entries[at - 1].bound >= entry.bound {
+            self.entries[at] = self.entries[at - 1];
+            at -= 1;
         }
-        let lanes = lanes.to_bitmask();
-        if lanes == 0 {
-            return None;
-        }
-        let lane = lanes.trailing_zeros();
-        let bound = self.bounds.to_array()[lane as usize % LANES];
-        // All at once, so that it need not be waited for when it is read again.
-        let taken = NUMBERS.simd_eq(f32x4::splat(lane as f32));
-        self.bounds = taken.select(f32x4::splat(f32::NEG_INFINITY), self.bounds);
-        Some((self.first + lane, bound))
+        self.entries[at] = entry;
+        self.len += 1;
     }
 }
 
-/// Of the lanes.
-const NUMBERS: f32x4 = f32x4::new([0.0, 1.0, 2.0, 3.0]);
-
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// Branch and bound below the clusters `range` of a level. Nothing is left out that has the
-    /// least score, so what is best is found whatever the order.
+    /// Branch and bound below a cluster, given its level and its number among all. Nothing is left
+    /// out that has the least score, so what is best is found whatever the order.
     #[inline(always)]
-    pub(crate) fn search<G: Goal>(&self, level: u32, range: (u32, u32), goal: &mut G) {
-        let leaves = self.tree.level(self.tree.level_count());
+    pub(crate) fn search<G: Goal>(&self, top: (u32, u32), goal: &mut G) {
+        let clusters = self.tree.clusters();
         self.descend(
-            (level, range),
+            top,
             self.tree.level_count(),
             goal,
             #[inline(always)]
             |leaf, _, goal| {
-                let leaf = &leaves[leaf as usize];
+                let leaf = &clusters[leaf as usize];
                 self.offer_points((leaf.first, leaf.first + leaf.count), goal)
             },
         );
     }
 
-    /// Goes from the clusters of one level down to level `last`, depth first, and calls `reached`
-    /// there with the clusters that may matter and their bounds, until it returns false.
+    /// Goes from a cluster down to level `last`, depth first, and calls `reached` there with the
+    /// clusters that may matter (their numbers among all) and their bounds, until it returns false.
     #[inline(always)]
     pub(crate) fn descend<G: Goal>(
         &self,
-        (level, range): (u32, (u32, u32)),
+        (level, cluster): (u32, u32),
         last: u32,
         goal: &mut G,
         mut reached: impl FnMut(u32, f32, &mut G) -> bool,
@@ -138,82 +127,97 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             return;
         }
         let (clusters, starts) = (self.tree.clusters(), self.tree.level_starts());
-        let (top, bottom) = (level as usize, last as usize);
-        let mut root = Frame::of(starts[top - 1], range);
-        self.fill(clusters, &mut root, goal);
+        let [bound, ..] = self
+            .bounds(&clusters[cluster as usize..], 1, goal)
+            .to_array();
         // The first look costs little: most bodies of a scene are apart.
-        if root.next == root.end && !root.bounds.simd_ge(f32x4::splat(goal.least())).any() {
+        if bound.is_nan() || bound < goal.least() {
             return;
         }
-        let mut frames = [Frame::EMPTY; MAX_LEVELS + 1];
-        let mut at = top;
-        frames[at] = root;
-        loop {
-            let frame = &mut frames[at];
-            let Some((child, bound)) = frame.take(G::BEST_FIRST, goal.least()) else {
-                if frame.next < frame.end {
-                    self.fill(clusters, frame, goal);
-                } else if at == top {
+        let mut stack = Stack::EMPTY;
+        stack.push(Entry {
+            bound,
+            cluster,
+            level,
+            done: 0,
+        });
+        while let Some(entry) = stack.pop() {
+            let least = goal.least();
+            if entry.bound < least {
+                continue;
+            }
+            if entry.level == last {
+                if !reached(entry.cluster, entry.bound, goal) {
                     return;
-                } else {
-                    at -= 1;
                 }
                 continue;
-            };
-            if at == bottom {
-                if !reached(child - starts[bottom - 1], bound, goal) {
-                    return;
-                }
+            }
+            let cluster = &clusters[entry.cluster as usize];
+            let left = cluster.count - entry.done;
+            let first = starts[entry.level as usize] + cluster.first + entry.done;
+            if left > LANES as u32 {
+                let done = entry.done + LANES as u32;
+                stack.push(Entry { done, ..entry });
+            }
+            let bounds = if G::ALL && entry.bound - least > 2.0 * cluster.radius {
+                f32x4::splat(entry.bound)
             } else {
-                let cluster = &clusters[child as usize];
-                let range = (cluster.first, cluster.first + cluster.count);
-                let mut frame = Frame::of(starts[at], range);
-                at += 1;
-                if G::ALL && bound - goal.least() > 2.0 * cluster.radius {
-                    frame.inherit(bound);
-                } else {
-                    self.fill(clusters, &mut frame, goal);
+                self.bounds(&clusters[first as usize..], left.min(LANES as u32), goal)
+            };
+            // What is no number is left out.
+            let kept = first_lanes(left) & bounds.simd_ge(f32x4::splat(least));
+            let base = stack.len;
+            let child = |lane: usize| Entry {
+                bound: bounds.to_array()[lane],
+                cluster: first + lane as u32,
+                level: entry.level + 1,
+                done: 0,
+            };
+            if G::BEST_FIRST {
+                lanes_in(kept).for_each(|lane| stack.insert(base, child(lane)));
+            } else {
+                // The first one on top.
+                for lane in (0..LANES)
+                    .rev()
+                    .filter(|lane| kept.to_bitmask() >> lane & 1 == 1)
+                {
+                    stack.push(child(lane));
                 }
-                frames[at] = frame;
             }
         }
     }
 
-    /// Bounds the next children of a frame.
+    /// Bounds of the scores in the first `count` clusters, [`LANES`] at most.
     #[inline(always)]
-    fn fill<G: Goal>(&self, clusters: &[Cluster], frame: &mut Frame, goal: &G) {
-        let count = (frame.end - frame.next).min(LANES as u32);
+    fn bounds<G: Goal>(&self, clusters: &[Cluster], count: u32, goal: &G) -> f32x4 {
         self.work.spheres(count);
-        frame.first = frame.next;
-        frame.next += count;
-        let (discs, penetrations) = self.bounds_of(&clusters[frame.first as usize..]);
-        let bounds = goal.bounds(&discs, f32x4::new(penetrations));
-        // What is no number is below everything, and so are the lanes that are not in use.
-        let counts = below(count) & bounds.simd_eq(bounds);
-        frame.bounds = counts.select(bounds, f32x4::splat(f32::NEG_INFINITY));
+        let (discs, penetrations) = self.penetration_bounds(clusters);
+        goal.bounds(&discs, f32x4::new(penetrations))
     }
 
     /// Whether there may be a contact, by a look at the cluster of all points.
     pub(crate) fn may_touch(&self) -> bool {
+        self.work.spheres(1);
         let top = &self.tree.clusters()[..1];
         self.is_posed
             && dispatch(
                 #[inline(always)]
-                || self.bounds_of(top).1[0] >= -self.margin,
+                || self.penetration_bounds(top).1[0] >= -self.margin,
             )
     }
 
     /// The discs of the first [`LANES`] clusters in the shell frame, and bounds of the penetration in
     /// them. Should there be fewer, the last is repeated.
     #[inline(always)]
-    pub(crate) fn bounds_of(&self, clusters: &[Cluster]) -> (Discs, [f32; LANES]) {
-        let (a, b, c, d) = match clusters {
-            [a, b, c, d, ..] => (a.disc(), b.disc(), c.disc(), d.disc()),
-            _ => {
-                let disc = |lane: usize| clusters[lane.min(clusters.len() - 1)].disc();
-                (disc(0), disc(1), disc(2), disc(3))
-            }
-        };
+    fn penetration_bounds(&self, clusters: &[Cluster]) -> (Discs, [f32; LANES]) {
+        let [a, b, c, d] = padded(clusters, |four| {
+            [
+                four[0].disc(),
+                four[1].disc(),
+                four[2].disc(),
+                four[3].disc(),
+            ]
+        });
         let [x, y, z, radii] = f32x4::transpose([a.0, b.0, c.0, d.0]);
         let centers = Vectors { x, y, z };
         let [x, y, z, thickness] = f32x4::transpose([a.1, b.1, c.1, d.1]);
@@ -248,17 +252,16 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 &self.to_field(positions.into()).into(),
                 &Vectors::from(inward).rotated(&self.rotation).into(),
             ));
-            let counts =
-                below(end - next) & penetrations.simd_ge(f32x4::splat(goal.least_penetration()));
+            let least = f32x4::splat(goal.least_penetration());
             let found = Found {
                 tree: self.tree,
                 first: next,
-                counts,
+                counts: first_lanes(end - next) & penetrations.simd_ge(least),
                 positions: positions.into(),
                 inward: inward.into(),
                 penetrations,
             };
-            if counts.any() && !goal.offer(&found) {
+            if found.counts.any() && !goal.offer(&found) {
                 return false;
             }
             next += LANES as u32;
@@ -284,26 +287,16 @@ impl Found<'_> {
     /// The contacts one by one, in order.
     #[inline(always)]
     pub(crate) fn each(&self) -> impl Iterator<Item = Contact> {
-        let mut lanes = self.counts.to_bitmask();
-        core::iter::from_fn(move || {
-            if lanes == 0 {
-                return None;
-            }
-            let lane = lanes.trailing_zeros();
-            lanes &= lanes - 1;
-            let point = self.first + lane;
-            Some(Contact {
-                point,
-                position: self.tree.point(point as usize),
-                normal: self.tree.normal(point as usize),
-                penetration: self.penetrations.to_array()[lane as usize % LANES],
-            })
-        })
+        self.each_in(self.counts)
     }
-}
 
-/// The first lanes, so many as are in use.
-#[inline(always)]
-fn below(count: u32) -> f32x4 {
-    NUMBERS.simd_lt(f32x4::splat(count as f32))
+    /// Those of the given lanes.
+    #[inline(always)]
+    pub(crate) fn each_in(&self, lanes: f32x4) -> impl Iterator<Item = Contact> {
+        let penetrations = self.penetrations.to_array();
+        lanes_in(lanes).map(
+            #[inline(always)]
+            move |lane| Contact::of(self.tree, self.first + lane as u32, penetrations[lane]),
+        )
+    }
 }

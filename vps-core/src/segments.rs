@@ -12,20 +12,21 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// below the leaves is taken as that of the leaves.
     pub fn for_each_segment(&self, level: u32, mut visit: impl FnMut(u32, Contact)) {
         let level = level.clamp(1, self.tree.level_count());
+        let start = self.tree.level_starts()[level as usize - 1];
         let mut every = All::new(self.margin, |_| ());
         dispatch(
             #[inline(always)]
             || {
                 self.descend(
-                    (1, TOP),
+                    TOP,
                     level,
                     &mut every,
                     #[inline(always)]
                     |segment, _, _| {
                         let mut deepest = Deepest::new(self.margin);
-                        self.search(level, (segment, segment + 1), &mut deepest);
+                        self.search((level, segment), &mut deepest);
                         if let Some(deepest) = deepest.found {
-                            visit(segment, deepest);
+                            visit(segment - start, deepest);
                         }
                         true
                     },

@@ -51,7 +51,7 @@ impl<S: Convex> DistanceField for S {
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         let (penetrations, gradients) = self.sample(discs.centers.into());
-        (penetrations + discs.rise(gradients)).to_array()
+        (penetrations + discs.rise(gradients, f32x4::ONE)).to_array()
     }
 }
 

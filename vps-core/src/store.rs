@@ -138,10 +138,10 @@ pub(crate) fn product(dims: [u32; 3]) -> usize {
 /// # Panics
 /// If there are fewer groups than for all cells.
 pub fn mark_plain(dims: [u32; 3], groups: &mut [CellGroup]) {
+    groups.iter_mut().for_each(|group| group.plain = 0);
     for_each_cell(dims, |cell, index| {
-        let bit = u64::from(is_plain(dims, groups, cell)) << (index % 64);
-        let plain = &mut groups[index / 64].plain;
-        *plain = *plain & !(1 << (index % 64)) | bit;
+        let plain = u64::from(is_plain(dims, groups, cell));
+        groups[index / 64].plain |= plain << (index % 64);
     });
 }
 
@@ -167,7 +167,7 @@ fn is_plain(dims: [u32; 3], groups: &[CellGroup], cell: [u32; 3]) -> bool {
         for y in cell[1]..=last(1) {
             for x in cell[0]..=last(0) {
                 let index = linear(cell_dims, [x, y, z]);
-                if groups[index / 64].refined >> (index % 64) & 1 == 1 {
+                if is_set(groups[index / 64].refined, index) {
                     return false;
                 }
             }
@@ -218,8 +218,7 @@ impl<'a> Store<'a> {
         }
         let mut marked = true;
         for_each_cell(dims, |cell, index| {
-            let is_marked = groups[index / 64].plain >> (index % 64) & 1 == 1;
-            marked &= is_marked == is_plain(dims, &groups, cell);
+            marked &= is_set(groups[index / 64].plain, index) == is_plain(dims, &groups, cell);
         });
         if cells.len() != refined || !marked {
             return Err(VoxelmapError::Cells);
@@ -231,7 +230,7 @@ impl<'a> Store<'a> {
             }
             stored += cell.bricks.count_ones() as usize;
         }
-        let middles = product(cell_dims.map(|n| n + 1));
+        let middles = product(lattice_dims(cell_dims));
         let bricks = middles + refined * MIDDLE_VALUES;
         let layout = Layout::Sparse(Sparse {
             groups,
@@ -418,8 +417,7 @@ impl<T: Value> Reader<'_, T> {
                         Around::Mixed(values) => mixed[lane] = Some(values),
                     }
                 }
-                let [a, b, c, d] = rows;
-                let mut eight = Eight::of([T::unzip(a), T::unzip(b), T::unzip(c), T::unzip(d)]);
+                let mut eight = Eight::of::<T>(rows);
                 for (lane, mixed) in mixed.into_iter().enumerate() {
                     if let Some(values) = mixed {
                         eight.set(lane, values);
@@ -447,12 +445,11 @@ impl<T: Value> Reader<'_, T> {
     ) -> Option<(f32x4, Vectors)> {
         let cells = corners.blocks(CELL.ilog2() as i32);
         for cell in cells.linear(parts.cell_dims) {
-            if parts.groups[cell as usize / 64].plain >> (cell % 64) & 1 == 0 {
+            if !is_set(parts.groups[cell / 64].plain, cell) {
                 return None;
             }
         }
-        let [nx, ny, nz] = parts.cell_dims;
-        let dims = [nx + 1, ny + 1, nz + 1];
+        let dims = lattice_dims(parts.cell_dims);
         let step = 1.0 / CELL as f32;
         let within = corners.within(CELL as i32 - 1);
         let (value, slope) = self.at_rows(cells, dims, within.plus(t).times(f32x4::splat(step)));
@@ -462,17 +459,26 @@ impl<T: Value> Reader<'_, T> {
     /// Interpolation in an array of `dims` values.
     #[inline(always)]
     fn at_rows(&self, corners: Voxels, dims: [u32; 3], t: Vectors) -> (f32x4, Vectors) {
-        let [a, b, c, d] = corners.linear(dims).map(|first| first as usize);
-        let [_, y, z, yz] = row_offsets(dims).map(|offset| offset as usize);
-        let row = |offset: usize| {
-            T::unzip([
-                self.pair(a + offset),
-                self.pair(b + offset),
-                self.pair(c + offset),
-                self.pair(d + offset),
-            ])
-        };
-        Eight::of([row(0), row(y), row(z), row(yz)]).interpolated(t)
+        let firsts = corners.linear(dims);
+        let [_, y, z, yz] = row_offsets(dims);
+        // The last one first: if it is there, so are the others.
+        let last = self.pairs(firsts, yz);
+        let (first, next, high) = (
+            self.pairs(firsts, 0),
+            self.pairs(firsts, y),
+            self.pairs(firsts, z),
+        );
+        Eight::of::<T>([first, next, high, last]).interpolated(t)
+    }
+
+    #[inline(always)]
+    fn pairs(&self, [a, b, c, d]: [usize; LANES], offset: usize) -> [T::Pair; LANES] {
+        [
+            self.pair(a + offset),
+            self.pair(b + offset),
+            self.pair(c + offset),
+            self.pair(d + offset),
+        ]
     }
 
     /// What a sparse store has around the voxel `corner` and its next neighbours.
@@ -485,18 +491,17 @@ impl<T: Value> Reader<'_, T> {
             (y % CELL) as usize,
             (z % CELL) as usize,
         ];
-        // Behind a face lie values of the lattice, up to which this cell reaches.
-        if parts.is_plain(cell) {
-            return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
-        }
         let last = CELL as usize - 1;
         let crosses = [local[0] == last, local[1] == last, local[2] == last];
         let in_cell = !(crosses[0] | crosses[1] | crosses[2]);
         let refined = parts.refined(cell);
-        if in_cell {
-            let Some(number) = refined else {
-                return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
-            };
+        // Behind a face lie values of the lattice, up to which this cell reaches.
+        if parts.is_plain(cell) || in_cell && refined.is_none() {
+            return Around::Coarse(self.lattice(parts, cell), local, 1.0 / CELL as f32);
+        }
+        if let Some(number) = refined
+            && in_cell
+        {
             if let Some(rows) = self.all_stored(parts, number, local) {
                 return Around::Rows(rows);
             }
@@ -619,13 +624,13 @@ impl<T: Value> Reader<'_, T> {
         let [x, y, z] = local;
         let Some(number) = refined else {
             let t = Vec3::new(x as f32, y as f32, z as f32) / CELL as f32;
-            return lerp_one::<T>(self.lattice(parts, cell), t);
+            return at::<T>(self.lattice(parts, cell), t);
         };
         if let Some(index) = parts.brick(number, local) {
             return self.get(index);
         }
         let t = Vec3::new((x % 4) as f32, (y % 4) as f32, (z % 4) as f32) / 4.0;
-        lerp_one::<T>(self.octant(parts, number, [x / 4, y / 4, z / 4]), t)
+        at::<T>(self.octant(parts, number, [x / 4, y / 4, z / 4]), t)
     }
 
     /// The corners of an octant of a refined cell.
@@ -639,11 +644,10 @@ impl<T: Value> Reader<'_, T> {
     /// The corners of a cell in the lattice of all cells.
     #[inline(always)]
     fn lattice(&self, parts: Parts<'_>, cell: [u32; 3]) -> [T::Pair; 4] {
-        let [nx, ny, nz] = parts.cell_dims;
-        let dims = [nx + 1, ny + 1, nz + 1];
+        let dims = lattice_dims(parts.cell_dims);
         let first = linear(dims, cell);
         let [a, b, c, d] = row_offsets(dims);
-        let row = |offset: u32| self.pair(first + offset as usize);
+        let row = |offset| self.pair(first + offset);
         [row(a), row(b), row(c), row(d)]
     }
 }
@@ -668,8 +672,6 @@ trait Value: Pod + Into<f32> {
 
     fn pair_of(first: Self, second: Self) -> Self::Pair;
 
-    fn of_pair(pair: Self::Pair) -> [f32; 2];
-
     /// The first ones of all pairs, and the second ones.
     fn unzip(pairs: [Self::Pair; LANES]) -> [f32x4; 2];
 }
@@ -680,10 +682,10 @@ impl Value for i16 {
 
     #[inline(always)]
     fn pair(values: &[Self], first: usize) -> i32 {
-        let bytes: &[u8] = bytemuck::cast_slice(values);
-        let start = first * size_of::<Self>();
-        let pair = &bytes[start..start + size_of::<i32>()];
-        let both = i32::from_ne_bytes([pair[0], pair[1], pair[2], pair[3]]);
+        // As a whole: of two loads the compiler makes worse.
+        let mut pair = [0_i16; 2];
+        pair.copy_from_slice(&values[first..first + 2]);
+        let both: i32 = bytemuck::cast(pair);
         if cfg!(target_endian = "big") {
             both.rotate_left(16)
         } else {
@@ -694,11 +696,6 @@ impl Value for i16 {
     #[inline(always)]
     fn pair_of(first: Self, second: Self) -> i32 {
         i32::from(second) << 16 | i32::from(first) & 0xffff
-    }
-
-    #[inline(always)]
-    fn of_pair(pair: i32) -> [f32; 2] {
-        [(pair << 16 >> 16) as f32, (pair >> 16) as f32]
     }
 
     #[inline(always)]
@@ -725,11 +722,6 @@ impl Value for f32 {
     }
 
     #[inline(always)]
-    fn of_pair(pair: [f32; 2]) -> [f32; 2] {
-        pair
-    }
-
-    #[inline(always)]
     fn unzip([a, b, c, d]: [[f32; 2]; LANES]) -> [f32x4; 2] {
         [
             f32x4::new([a[0], b[0], c[0], d[0]]),
@@ -742,9 +734,18 @@ impl Value for f32 {
 struct Eight([f32x4; 8]);
 
 impl Eight {
+    /// Of rows along x, the pairs of all lanes in each.
     #[inline(always)]
-    fn of([[a, b], [c, d], [e, f], [g, h]]: [[f32x4; 2]; 4]) -> Self {
+    fn of<T: Value>([low, next, high, last]: [[T::Pair; LANES]; 4]) -> Self {
+        let ([a, b], [c, d]) = (T::unzip(low), T::unzip(next));
+        let ([e, f], [g, h]) = (T::unzip(high), T::unzip(last));
         Self([a, b, c, d, e, f, g, h])
+    }
+
+    /// The same values in all lanes.
+    #[inline(always)]
+    fn splat<T: Value>([a, b, c, d]: [T::Pair; 4]) -> Self {
+        Self::of::<T>([[a; LANES], [b; LANES], [c; LANES], [d; LANES]])
     }
 
     #[inline(always)]
@@ -812,7 +813,7 @@ impl Parts<'_> {
     #[inline(always)]
     fn is_plain(&self, cell: [u32; 3]) -> bool {
         let index = linear(self.cell_dims, cell);
-        self.groups[index / 64].plain >> (index % 64) & 1 == 1
+        is_set(self.groups[index / 64].plain, index)
     }
 
     /// The number of a cell among the refined ones, if it is one of them.
@@ -838,8 +839,22 @@ fn linear(dims: [u32; 3], at: [u32; 3]) -> usize {
 
 /// How far the four rows around a place lie from the first.
 #[inline(always)]
-fn row_offsets([nx, ny, _]: [u32; 3]) -> [u32; 4] {
-    [0, nx, nx * ny, nx * ny + nx]
+fn row_offsets([nx, ny, _]: [u32; 3]) -> [usize; 4] {
+    // The product in 32 bits, so that positions are known not to overflow.
+    let (row, plane) = (nx as usize, nx.wrapping_mul(ny) as usize);
+    [0, row, plane, plane + row]
+}
+
+/// The lattice has a value at the first voxel of each cell and one behind the last.
+#[inline(always)]
+fn lattice_dims([nx, ny, nz]: [u32; 3]) -> [u32; 3] {
+    [nx + 1, ny + 1, nz + 1]
+}
+
+/// Whether the bit of a cell is set in its group.
+#[inline(always)]
+fn is_set(bits: u64, cell: usize) -> bool {
+    bits >> (cell % 64) & 1 == 1
 }
 
 /// What the values at the corners of a cube of `size` voxels make of one of them and of the next
@@ -851,31 +866,27 @@ fn between<T: Value>(
     crosses: [bool; 3],
     size: usize,
 ) -> [f32; 8] {
-    let size = size as f32;
     let t = |axis: usize, next: [f32; LANES]| {
         let next = if crosses[axis] { [0.0; LANES] } else { next };
-        (f32x4::new(next) + first[axis] as f32) / size
+        (f32x4::new(next) + first[axis] as f32) / size as f32
     };
-    let (x, y) = (t(0, [0.0, 1.0, 0.0, 1.0]), t(1, [0.0, 0.0, 1.0, 1.0]));
-    let lerp = |a: f32x4, b: f32x4, t: f32x4| a + (b - a) * t;
-    let row = |i: usize| {
-        let [a, b] = T::of_pair(corners[i]);
-        lerp(f32x4::splat(a), f32x4::splat(b), x)
+    let corners = Eight::splat::<T>(corners);
+    let plane = |next: f32| {
+        let t = Vectors {
+            x: t(0, [0.0, 1.0, 0.0, 1.0]),
+            y: t(1, [0.0, 0.0, 1.0, 1.0]),
+            z: t(2, [next; LANES]),
+        };
+        corners.interpolated(t).0
     };
-    let (low, high) = (lerp(row(0), row(1), y), lerp(row(2), row(3), y));
-    let plane = |next: f32| lerp(low, high, t(2, [next; LANES]));
     bytemuck::cast([plane(0.0), plane(1.0)])
 }
 
-/// Trilinear interpolation of a single point.
+/// What the values at the corners of a cube make of a single point.
 #[inline(always)]
-fn lerp_one<T: Value>(rows: [T::Pair; 4], t: Vec3) -> f32 {
-    let lerp = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let row = |i: usize| {
-        let [first, second] = T::of_pair(rows[i]);
-        lerp(first, second, t.x)
-    };
-    lerp(lerp(row(0), row(1), t.y), lerp(row(2), row(3), t.y), t.z)
+fn at<T: Value>(corners: [T::Pair; 4], t: Vec3) -> f32 {
+    let (value, _) = Eight::splat::<T>(corners).interpolated(Vectors::splat(t));
+    value.to_array()[0]
 }
 
 #[cfg(test)]

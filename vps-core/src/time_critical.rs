@@ -44,13 +44,12 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             is_complete: false,
         };
         let mut tested = 0;
-        let mut points = Points {
-            margin: self.margin,
+        let mut all = Everything {
             sum: Sum::new(self.tree, center, Weight::Area, -self.margin),
             deepest: Deepest::new(self.margin),
         };
         for level in 1..=self.tree.level_count() {
-            let clusters = self.tree.level(level);
+            let clusters = self.tree.clusters();
             let mut pass = Pass::default();
             let mut bound = -self.margin;
             let mut stopped = false;
@@ -70,7 +69,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             };
             dispatch(
                 #[inline(always)]
-                || self.descend((1, TOP), level, &mut points, &mut test),
+                || self.descend(TOP, level, &mut all, &mut test),
             );
             if stopped {
                 return estimate;
@@ -84,27 +83,27 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             }
         }
         let leaf_level = self.tree.level_count();
-        let leaves = self.tree.level(leaf_level);
-        points.deepest.found = estimate.deepest;
+        let leaves = self.tree.clusters();
+        all.deepest.found = estimate.deepest;
         let mut stopped = false;
-        let mut test = |leaf: u32, _: f32, points: &mut Points<'_>| {
+        let mut test = |leaf: u32, _: f32, all: &mut Everything<'_>| {
             if !go_on(tested) {
                 stopped = true;
                 return false;
             }
             let leaf = &leaves[leaf as usize];
             tested += u64::from(leaf.count);
-            self.offer_points((leaf.first, leaf.first + leaf.count), points)
+            self.offer_points((leaf.first, leaf.first + leaf.count), all)
         };
         dispatch(
             #[inline(always)]
-            || self.descend((1, TOP), leaf_level, &mut points, &mut test),
+            || self.descend(TOP, leaf_level, &mut all, &mut test),
         );
-        estimate.deepest = points.deepest.found;
+        estimate.deepest = all.deepest.found;
         if !stopped {
             let deepest = estimate.deepest.map_or(-self.margin, |d| d.penetration);
             estimate.penetration_bound = deepest;
-            estimate.wrench = points.sum.wrench();
+            estimate.wrench = all.sum.wrench();
             estimate.is_complete = true;
         }
         estimate
@@ -112,18 +111,17 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 }
 
 /// What all points tell.
-struct Points<'q> {
-    margin: f32,
+struct Everything<'q> {
     sum: Sum<'q>,
     deepest: Deepest,
 }
 
-impl Goal for Points<'_> {
+impl Goal for Everything<'_> {
     const BEST_FIRST: bool = false;
 
     #[inline(always)]
     fn least_penetration(&self) -> f32 {
-        -self.margin
+        self.sum.least_penetration()
     }
 
     #[inline(always)]
@@ -141,7 +139,7 @@ struct Pass {
 
 impl Pass {
     fn add(&mut self, contact: &Contact, area: f32, center: Vec3, deepest: &mut Option<Contact>) {
-        self.wrench.add(contact, Weight::Area.of(area), center);
+        self.wrench.add(contact, area, center);
         if contact.is_deeper_than(deepest.as_ref()) {
             *deepest = Some(*contact);
         }

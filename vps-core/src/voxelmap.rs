@@ -197,11 +197,14 @@ impl<'a> Voxelmap<'a> {
             .linear(self.store.cell_dims());
         let mut steps = [0.0; LANES];
         for lane in 0..LANES {
-            steps[lane] = f32::from(self.bends[cells[lane] as usize]);
+            steps[lane] = f32::from(self.bends[cells[lane]]);
         }
         let steps = f32x4::new(steps);
         let is_unknown = steps.simd_eq(f32x4::splat(f32::from(UNKNOWN_BEND)));
-        is_unknown.select(enormous, steps * (self.grid.voxel_size() / BEND_STEPS))
+        is_unknown.select(
+            enormous,
+            steps * (self.grid.voxel_size() * (1.0 / BEND_STEPS)),
+        )
     }
 
     /// V of a voxel's centre in metres.

@@ -27,17 +27,6 @@ pub enum Weight {
     Area,
 }
 
-impl Weight {
-    /// The weight of a point that stands for so much area.
-    #[inline]
-    pub(crate) fn of(self, area: f32) -> f32 {
-        match self {
-            Self::Point => 1.0,
-            Self::Area => area,
-        }
-    }
-}
-
 impl Wrench {
     /// Adds what a contact does to the shell's body about `center`, in the shell frame; nothing for
     /// one outside of the solid.
@@ -107,7 +96,7 @@ impl Goal for Sum<'_> {
     fn offer(&mut self, found: &Found<'_>) -> bool {
         let mut weights = found.counts & found.penetrations.fast_max(f32x4::ZERO);
         if let Some(areas) = self.areas {
-            weights *= f32x4::new(padded(&areas[found.first as usize..]));
+            weights *= padded(&areas[found.first as usize..], |areas| f32x4::new(*areas));
         }
         let force = found.inward.times(weights);
         self.force = self.force.plus(force);
