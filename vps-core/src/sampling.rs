@@ -262,38 +262,39 @@ impl Trilinear<'_> {
         let sampled = self.sampled(centers);
         let at_center = sampled.values;
 
+        let voxels = radii * map.grid().per_metre();
+        let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
+        let gradients = sampled.gradients;
+        let steepest = gradients.length();
+        let mut bent = at_center
+            + discs.rise(gradients, steepest)
+            + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
+        let leaves = centers.room_in(&map.grid().center_bounds()).simd_lt(radii);
+        let is_in_grid = !leaves.any();
+        // The other bounds are no smaller then.
+        if is_in_grid && (is_near & bent.simd_le(at_center + radii)).all() {
+            return bent;
+        }
+
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
         let way = smoothed.fast_min(radii * SQRT_3);
         let chance = (radii * (SQRT_3 * map.grid().per_metre())).fast_min(f32x4::ONE);
         let bound = Stored::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
         let error = bound.error_at(at_center);
         let by_way = bound.of(at_center + way + chance * error, chance);
+        if is_in_grid {
+            return is_near.select(bent.fast_min(by_way), by_way);
+        }
         // Outside of the grid the way to it is taken off, which is shorter by up to a radius.
-        let mut out = by_way - (sampled.outside - radii).fast_max(f32x4::ZERO);
-
-        let voxels = radii * map.grid().per_metre();
-        let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
-        let gradients = sampled.gradients;
-        let steepest = gradients.length();
-        let mut bent = at_center
-            + gradients.dot(sampled.off)
-            + discs.rise(gradients, steepest)
-            + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
-        let leaves = centers.room_in(&map.grid().center_bounds()).simd_lt(radii);
-        if leaves.any() {
-            let steeper = (steepest - 1.0).fast_max(f32x4::ZERO);
-            bent += leaves & (steeper * (sampled.outside + radii));
-        }
-        out = is_near.select(bent.fast_min(out), out);
-
+        let by_way = by_way - (sampled.outside - radii).fast_max(f32x4::ZERO);
+        let steeper = (steepest - 1.0).fast_max(f32x4::ZERO);
+        bent += gradients.dot(sampled.off) + (leaves & (steeper * (sampled.outside + radii)));
+        let out = is_near.select(bent.fast_min(by_way), by_way);
+        // No point of the solid is closer than its box.
+        let to_box = centers.minus(centers.clamped(&map.solid())).length();
+        let by_box = bound.of(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
         let is_outside = sampled.outside.simd_gt(f32x4::ZERO);
-        if is_outside.any() {
-            // No point of the solid is closer than its box.
-            let to_box = centers.minus(centers.clamped(&map.solid())).length();
-            let by_box = bound.of(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
-            out = is_outside.select(by_box.fast_min(out), out);
-        }
-        out
+        is_outside.select(by_box.fast_min(out), out)
     }
 }
 
