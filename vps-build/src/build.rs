@@ -51,6 +51,20 @@ pub enum ClosestPoints {
     GradientWalk,
 }
 
+/// How points are put into clusters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clustering {
+    /// From the top down: cut in halves across the longest direction, so that all clusters of a
+    /// level have about as many points.
+    #[default]
+    Halves,
+    /// As in the paper (section 2.1.2): from the leaves up, the nearest K together.
+    Nearest {
+        /// Where it starts.
+        seed: u64,
+    },
+}
+
 /// Whether all voxels have a value stored. A sparse map takes a fraction of the memory, and queries
 /// on it about twice the time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,6 +95,8 @@ pub struct BuildOptions {
     pub points: PointCount,
     /// Children of a cluster K, at least 2.
     pub branching: u32,
+    /// How clusters are made.
+    pub clustering: Clustering,
     /// What the voxels hold.
     pub encoding: Encoding,
     /// How distances are found.
@@ -89,8 +105,6 @@ pub struct BuildOptions {
     pub density: Density,
     /// Which side of a triangle is the inside.
     pub sign: Sign,
-    /// Where the clustering starts.
-    pub seed: u64,
     /// The most memory voxels and points may take while they are made, in bytes.
     pub memory_limit: u64,
 }
@@ -103,11 +117,11 @@ impl Default for BuildOptions {
             margin: 4,
             points: PointCount::About(10_000),
             branching: 4,
+            clustering: Clustering::default(),
             encoding: Encoding::Distances(None),
             closest_points: ClosestPoints::default(),
             density: Density::default(),
             sign: Sign::default(),
-            seed: 1,
             memory_limit: 4 << 30,
         }
     }
@@ -257,7 +271,7 @@ pub fn build(
     on_stage(Stage::Points);
     let samples = sample::sample(&solid.mesh, options.points, &voxelmap);
     on_stage(Stage::Tree);
-    let tree = cluster::build_tree(&samples, options.branching as usize, options.seed)?;
+    let tree = cluster::build_tree(&samples, options.branching as usize, options.clustering)?;
     Ok(Built {
         asset: Asset {
             voxelmap,

@@ -1,68 +1,57 @@
-//! The point-sphere tree (section 2.1.2): points grouped K by K, the groups grouped again up to a
-//! single one, and a minimal ball around the points of each.
+//! The point-sphere tree (section 2.1.2): points in clusters, clusters in clusters up to a single
+//! one, and a minimal ball around the points of each.
 
 use glamx::DVec3;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use vps_core::{Cluster, PointSphereTree, TreeError, Vec3};
 
 use crate::ball::minimal_ball;
-use crate::kdtree::KdTree;
 use crate::sample::Samples;
+use crate::{Clustering, halves, nearest};
 
-/// A point this many times further from its parent point than is usual on its level goes
-/// elsewhere.
-const TOO_FAR: f64 = 2.0;
-
-/// Members of one level's clusters, as positions among the level below, and their parent points.
-struct Level {
-    members: Vec<Vec<usize>>,
-    parent_points: Vec<usize>,
-}
+/// For each cluster of a level its members, as positions in the level below (in the order of the
+/// clusters above them), or among the points.
+pub(crate) type Members = Vec<Vec<usize>>;
 
 /// Groups the samples by K = `branching` (at least 2) and orders them by cluster.
 pub(crate) fn build_tree(
     samples: &Samples,
     branching: usize,
-    seed: u64,
+    clustering: Clustering,
 ) -> Result<PointSphereTree<'static>, TreeError> {
     let positions = &samples.positions;
     if positions.is_empty() {
         return Err(TreeError::NoPoints);
     }
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    // From the leaves up; what is grouped first is the points themselves.
-    let mut levels: Vec<Level> = Vec::new();
-    let mut grouped: Vec<usize> = (0..positions.len()).collect();
-    loop {
-        let points: Vec<_> = grouped.iter().map(|&p| positions[p]).collect();
-        let members = group(&points, branching, &mut rng);
-        let parent_points: Vec<_> = members
-            .iter()
-            .map(|m| grouped[closest_to_average(&points, m)])
-            .collect();
-        let done = members.len() == 1;
-        grouped.clone_from(&parent_points);
-        levels.push(Level {
-            members,
-            parent_points,
-        });
-        if done {
-            break;
-        }
-    }
-    levels.reverse();
+    // From the leaves up.
+    let levels = match clustering {
+        Clustering::Halves => halves::clusters(positions, branching),
+        Clustering::Nearest { seed } => nearest::clusters(positions, branching, seed),
+    };
     assemble(samples, &levels)
+}
+
+/// The point that stands for each cluster: of its members, or the points that stand for them, the one
+/// closest to their average.
+pub(crate) fn parent_points(positions: &[DVec3], below: &[usize], members: &Members) -> Vec<usize> {
+    let points: Vec<_> = below.iter().map(|&p| positions[p]).collect();
+    let parent = |members: &Vec<usize>| below[closest_to_average(&points, members)];
+    members.iter().map(parent).collect()
 }
 
 /// Orders clusters and points so that the children of a cluster follow each other, and wraps them
 /// in balls.
-fn assemble(samples: &Samples, levels: &[Level]) -> Result<PointSphereTree<'static>, TreeError> {
+fn assemble(samples: &Samples, levels: &[Members]) -> Result<PointSphereTree<'static>, TreeError> {
+    let mut parents = Vec::new();
+    let mut below: Vec<usize> = (0..samples.positions.len()).collect();
+    for members in levels {
+        below = parent_points(&samples.positions, &below, members);
+        parents.push(below.clone());
+    }
     let mut clusters: Vec<Cluster> = Vec::new();
     let mut level_starts = vec![0];
     let mut order = vec![0];
-    for level in levels {
+    for (members, parents) in levels.iter().zip(&parents).rev() {
         let mut next = Vec::new();
         for &cluster in &order {
             clusters.push(Cluster {
@@ -73,11 +62,11 @@ fn assemble(samples: &Samples, levels: &[Level]) -> Result<PointSphereTree<'stat
                 lift: 0.0,
                 bulge: 0.0,
                 first: next.len() as u32,
-                count: level.members[cluster].len() as u32,
-                parent_point: level.parent_points[cluster] as u32,
+                count: members[cluster].len() as u32,
+                parent_point: parents[cluster] as u32,
                 area: 0.0,
             });
-            next.extend(&level.members[cluster]);
+            next.extend(&members[cluster]);
         }
         level_starts.push(clusters.len() as u32);
         order = next;
@@ -138,24 +127,18 @@ fn wrap(
         .par_iter_mut()
         .zip(below)
         .for_each(|(cluster, (start, end))| {
-            let held: Vec<_> = points[start..end]
-                .iter()
-                .map(|&p| Vec3::from_array(p).as_dvec3())
-                .collect();
-            let center = minimal_ball(&held).0.as_vec3();
+            let held = || points[start..end].iter().map(|&p| Vec3::from_array(p));
+            let exact: Vec<_> = held().map(Vec3::as_dvec3).collect();
+            let center = minimal_ball(&exact).0.as_vec3();
             cluster.center = center.to_array();
             // Measured from the rounded centre as a query measures it, so no point is left out.
-            cluster.radius = points[start..end]
-                .iter()
-                .map(|&p| center.distance(Vec3::from_array(p)))
-                .fold(0.0, f32::max);
+            cluster.radius = held().map(|p| center.distance(p)).fold(0.0, f32::max);
             let facing: Vec3 = normals[start..end]
                 .iter()
                 .map(|&n| Vec3::from_array(n))
                 .sum();
             let normal = facing.normalize_or(Vec3::Y);
             cluster.normal = normal.to_array();
-            let held = || points[start..end].iter().map(|&p| Vec3::from_array(p));
             let around: Vec<_> = held().map(|p| cluster.around(p)).collect();
             (cluster.lift, cluster.bulge) = dish(&around, cluster.radius);
             cluster.thickness = held().map(|p| cluster.off_dish(p)).fold(0.0, f32::max);
@@ -196,83 +179,8 @@ fn dish(around: &[(f32, f32)], radius: f32) -> (f32, f32) {
     (off(bulge).0, bulge)
 }
 
-/// Divides points into clusters of about `size`, one after the other: each takes the points
-/// closest to its first one, and the next closest starts the next cluster.
-fn group(points: &[DVec3], size: usize, rng: &mut ChaCha8Rng) -> Vec<Vec<usize>> {
-    if points.len() <= size {
-        return vec![(0..points.len()).collect()];
-    }
-    let mut left = KdTree::new(points);
-    let mut clusters = Vec::new();
-    let mut next = Some(rng.random_range(0..points.len()));
-    while let Some(first) = next {
-        let mut members = left.closest(points[first], size + 1);
-        next = (members.len() > size).then(|| members[size]);
-        members.truncate(size);
-        for &member in &members {
-            left.remove(member);
-        }
-        clusters.push(members);
-    }
-    let regrouped = regroup_far_points(points, clusters.clone());
-    // With nothing but outliers a level would not shrink.
-    if 4 * regrouped.len() <= 3 * points.len() {
-        regrouped
-    } else {
-        clusters
-    }
-}
-
-/// The repair of section 2.1.2: points too far from their cluster's parent point join the cluster
-/// whose parent point is closest, or become a cluster of their own if that is too far as well.
-fn regroup_far_points(points: &[DVec3], mut clusters: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
-    let mut radii: Vec<f64> = clusters
-        .iter()
-        .map(|members| {
-            let parent = points[closest_to_average(points, members)];
-            let distances = members.iter().map(|&m| points[m].distance(parent));
-            distances.fold(0.0, f64::max)
-        })
-        .collect();
-    let middle = radii.len() / 2;
-    let usual = *radii.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let threshold = TOO_FAR * usual;
-    let mut tagged = Vec::new();
-    for members in &mut clusters {
-        // Removing a point moves the parent point, so the others are looked at again.
-        loop {
-            let parent = points[closest_to_average(points, members)];
-            let before = members.len();
-            members.retain(|&m| {
-                let far = points[m].distance(parent) > threshold;
-                if far {
-                    tagged.push(m);
-                }
-                !far
-            });
-            if members.len() == before {
-                break;
-            }
-        }
-    }
-    let parents: Vec<_> = clusters
-        .iter()
-        .map(|members| points[closest_to_average(points, members)])
-        .collect();
-    let by_place = KdTree::new(&parents);
-    for point in tagged {
-        let closest = by_place.closest(points[point], 1)[0];
-        if parents[closest].distance(points[point]) <= threshold {
-            clusters[closest].push(point);
-        } else {
-            clusters.push(vec![point]);
-        }
-    }
-    clusters
-}
-
 /// The member closest to the average of all: the parent point.
-fn closest_to_average(points: &[DVec3], members: &[usize]) -> usize {
+pub(crate) fn closest_to_average(points: &[DVec3], members: &[usize]) -> usize {
     let average = members.iter().map(|&m| points[m]).sum::<DVec3>() / members.len() as f64;
     let distance = |m: usize| points[m].distance_squared(average);
     let closest = members

@@ -26,7 +26,7 @@
 //! | closest points and distances | `bvh`, `distance` | 2.1.1 |
 //! | what may be interpolated | `sparse` | |
 //! | pointshell | `sample` | 2.1.2 |
-//! | clusters and their tree | `cluster` | 2.1.2 |
+//! | clusters and their tree | `cluster`, `halves`, `nearest` | 2.1.2 |
 //! | minimal enclosing balls | [`ball`] | 2.1.2 |
 
 #![forbid(unsafe_code)]
@@ -39,12 +39,14 @@ mod cluster;
 mod distance;
 mod edges;
 mod file;
+mod halves;
 mod health;
 mod kdtree;
 mod layers;
 mod mass;
 mod mesh;
 pub mod models;
+mod nearest;
 mod places;
 mod read;
 mod sample;
@@ -56,8 +58,8 @@ mod triangle;
 mod winding;
 
 pub use build::{
-    BuildError, BuildOptions, Built, ClosestPoints, DENSE_VOXELS, Density, Encoding, PointCount,
-    Resolution, Stage, build,
+    BuildError, BuildOptions, Built, ClosestPoints, Clustering, DENSE_VOXELS, Density, Encoding,
+    PointCount, Resolution, Stage, build,
 };
 pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use health::Health;

@@ -1,6 +1,8 @@
 //! How long queries take beside those of parry, in the same run and for the same poses, and the
 //! table of it in `reports/queries`. Fetch the bunny first: `just query-report`.
 
+mod setting;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -10,8 +12,9 @@ use std::time::{Duration, Instant};
 use criterion::{BenchmarkGroup, Criterion, SamplingMode, measurement::WallTime};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
+use setting::{FINE, GROUND, bunny, bunny_options, ground_options};
 use vps_build::{
-    BuildOptions, Density, Mesh, PointCount, Resolution, build, models, read_mesh, write_atomically,
+    BuildOptions, Density, Mesh, PointCount, Resolution, build, models, write_atomically,
 };
 use vps_compare::{
     CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh, Vps,
@@ -20,11 +23,11 @@ use vps_compare::{
 use vps_core::{Asset, DistanceField, PointSphereTree, Query, Weight, Work};
 use vps_rapier::{Sampling, VpsDispatcher, VpsShape};
 
-const GROUND: [f64; 3] = [2.0, 0.2, 2.0];
 /// How far ahead contacts are asked for in metres: rapier's default.
 const PREDICTION: f32 = 0.02;
-const FINE: u32 = 35_596;
 const COARSE: u32 = 799;
+/// How often those that are compared take turns.
+const ROUNDS: usize = 5;
 
 fn main() {
     let mut criterion = Criterion::default()
@@ -43,31 +46,6 @@ fn main() {
     against_triangles(&mut criterion, &mut table);
     criterion.final_summary();
     table.write();
-}
-
-fn bunny() -> Mesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.cache/models/bunny.obj");
-    let bunny = read_mesh(&path, None).expect("the bunny: `just fetch` brings it");
-    bunny.scaled(0.135).expect("a sound scale")
-}
-
-fn bunny_options(points: PointCount) -> BuildOptions {
-    BuildOptions {
-        resolution: Resolution::VoxelSize(0.00256),
-        margin: 100,
-        points,
-        ..BuildOptions::default()
-    }
-}
-
-fn ground_options(density: Density) -> BuildOptions {
-    BuildOptions {
-        resolution: Resolution::VoxelSize(0.005),
-        margin: 4,
-        points: PointCount::About(10),
-        density,
-        ..BuildOptions::default()
-    }
 }
 
 fn asset(mesh: &Mesh, options: &BuildOptions) -> Asset<'static> {
@@ -258,8 +236,7 @@ fn ground(
             Trimesh.prepare(&scene).unwrap(),
         ),
     ];
-    let mut group = group(criterion, "ground");
-    let mut seconds = BTreeMap::new();
+    let mut rounds: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     table.line("# Queries beside parry's\n");
     table.line(
         "Written by `just query-report` (criterion, one core, means over all poses). Poses: ten\n\
@@ -267,25 +244,37 @@ fn ground(
          programs and the machine's own mood move all times together: compare within the report.\n",
     );
     table.line("## Contact manifolds as an engine asks for them, 20 mm ahead\n");
+    table.line(&format!(
+        "Medians of {ROUNDS} rounds, in each of which all took their turn.\n"
+    ));
     table.line(
         "| algorithm | a query | triangle mesh / this | decomposition / this | this / hull |",
     );
     table.line("|---|---|---|---|---|");
-    for (name, _, prepared) in &cases {
-        // As an engine keeps them, for bodies that go on from pose to pose.
-        let mut contacts = Contacts::default();
-        let poses = if *name == "trimesh" {
-            &poses[..20]
-        } else {
-            poses
-        };
-        let time = table.measure(&mut group, "ground", name, poses, |pose| {
-            prepared
-                .query(pose, PREDICTION, &mut contacts)
-                .expect("a pair of shapes it knows");
-        });
-        seconds.insert(*name, time);
+    for round in 0..ROUNDS {
+        let group_name = format!("ground_{round}");
+        let mut group = group(criterion, &group_name);
+        for (name, _, prepared) in &cases {
+            // As an engine keeps them, for bodies that go on from pose to pose.
+            let mut contacts = Contacts::default();
+            let poses = if *name == "trimesh" {
+                &poses[..20]
+            } else {
+                poses
+            };
+            let time = table.measure(&mut group, &group_name, name, poses, |pose| {
+                prepared
+                    .query(pose, PREDICTION, &mut contacts)
+                    .expect("a pair of shapes it knows");
+            });
+            rounds.entry(name).or_default().push(time);
+        }
     }
+    let median = |mut times: Vec<f64>| *times.select_nth_unstable_by(ROUNDS / 2, f64::total_cmp).1;
+    let seconds: BTreeMap<_, _> = rounds
+        .into_iter()
+        .map(|(name, times)| (name, median(times)))
+        .collect();
     for (name, label, _) in &cases {
         let own = seconds[name];
         table.line(&format!(

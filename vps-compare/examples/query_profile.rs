@@ -1,14 +1,17 @@
 //! Instructions and cache misses of queries, counted by `valgrind --tool=callgrind`, and the table
 //! of it in `reports/queries/profile.md`. What takes part is built first: `just query-profile`.
 
+#[path = "../benches/setting/mod.rs"]
+mod setting;
+
 use std::fmt::Write;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use setting::{FINE, GROUND, bunny, bunny_options, ground_options};
 use vps_build::{
-    BuildOptions, Density, Mesh, PointCount, Resolution, build, read_asset, read_mesh, write_asset,
-    write_atomically,
+    BuildOptions, Density, Mesh, PointCount, build, read_asset, write_asset, write_atomically,
 };
 use vps_core::{Asset, CountWork, Cuboid, DistanceField, Pose3, Quat, Query, Vec3, Weight, Work};
 
@@ -50,29 +53,17 @@ fn file(name: &str) -> PathBuf {
 }
 
 fn report() {
-    let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.cache/models/bunny.obj");
-    let bunny = read_mesh(&bunny, None).expect("the bunny: `just fetch` brings it");
-    let bunny = bunny.scaled(0.135).expect("a sound scale");
-    let ground = Mesh::cuboid([2.0, 0.2, 2.0]).expect("a box");
+    let ground = Mesh::cuboid(GROUND).expect("a box");
     let around = Mesh::cuboid([0.8; 3]).expect("a box");
-    let options = |voxel_size: f64, points: u32, density: Density| BuildOptions {
-        resolution: Resolution::VoxelSize(voxel_size),
-        points: PointCount::About(points),
-        density,
-        ..BuildOptions::default()
-    };
     let make = |name: &str, mesh: &Mesh, options: &BuildOptions| {
         let asset = build(mesh, options, &|_| ()).expect("a sound mesh").asset;
         write_asset(&file(name), &asset).expect("a place for assets");
     };
-    make("bunny", &bunny, &options(0.00256, 35_596, Density::Sparse));
+    make("bunny", &bunny(), &bunny_options(PointCount::About(FINE)));
     for (name, density) in [("dense", Density::Dense), ("sparse", Density::Sparse)] {
-        make(name, &ground, &options(0.005, 10, density));
-        make(
-            &format!("around_{name}"),
-            &around,
-            &options(0.005, 10, density),
-        );
+        let options = ground_options(density);
+        make(name, &ground, &options);
+        make(&format!("around_{name}"), &around, &options);
     }
 
     let mut text = String::from(

@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use vps_build::{
-    BuildOptions, Built, ClosestPoints, Density, Encoding, PointCount, Repairs, Resolution, Sign,
-    Stage, build, read_mesh, write_asset,
+    BuildOptions, Built, ClosestPoints, Clustering, Density, Encoding, PointCount, Repairs,
+    Resolution, Sign, Stage, build, read_mesh, write_asset,
 };
 use vps_core::encode;
 
@@ -46,6 +46,9 @@ pub(crate) struct BuildArgs {
     /// Children of a cluster, K
     #[arg(short = 'k', long, default_value_t = 4)]
     branching: u32,
+    /// How points are put into clusters
+    #[arg(long, value_enum, default_value_t = ClusteringName::Halves)]
+    clustering: ClusteringName,
     /// What the voxels hold
     #[arg(long, value_enum, default_value_t = EncodingName::Distances)]
     encoding: EncodingName,
@@ -61,7 +64,7 @@ pub(crate) struct BuildArgs {
     /// Which side of a face is the inside
     #[arg(long, value_enum, default_value_t = SignName::Auto)]
     sign: SignName,
-    /// Where the clustering starts
+    /// Where clustering by the nearest starts
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Most memory voxels and points may take while building, in MiB
@@ -76,6 +79,14 @@ pub(crate) struct BuildArgs {
     /// Say what was built for machines
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ClusteringName {
+    /// Cut in halves from the top down
+    Halves,
+    /// As in the paper, the nearest together from the leaves up
+    Nearest,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -131,6 +142,10 @@ impl BuildArgs {
                 None => PointCount::About(self.points),
             },
             branching: self.branching,
+            clustering: match self.clustering {
+                ClusteringName::Halves => Clustering::Halves,
+                ClusteringName::Nearest => Clustering::Nearest { seed: self.seed },
+            },
             encoding: match self.encoding {
                 EncodingName::Layers => Encoding::Layers,
                 EncodingName::Distances => Encoding::Distances(self.precision),
@@ -151,7 +166,6 @@ impl BuildArgs {
                 SignName::Generalized => Sign::Generalized,
                 SignName::Fill => Sign::Fill,
             },
-            seed: self.seed,
             memory_limit: self.memory_limit << 20,
         }
     }

@@ -6,12 +6,19 @@ use crate::support::{
 use glamx::DVec3;
 use proptest::prelude::*;
 use vps_build::{
-    BuildOptions, ClosestPoints, Density, Encoding, Mesh, PointCount, Resolution, build,
+    BuildOptions, ClosestPoints, Clustering, Density, Encoding, Mesh, PointCount, Resolution, build,
 };
 use vps_core::conformance::check;
 use vps_core::{
     Ball, Capsule, Cuboid, Cylinder, DistanceField, HalfSpace, Quat, Vec3, Voxelmap, encode,
 };
+
+fn clustering() -> impl Strategy<Value = Clustering> {
+    prop_oneof![
+        Just(Clustering::Halves),
+        any::<u64>().prop_map(|seed| Clustering::Nearest { seed }),
+    ]
+}
 
 proptest! {
     #![proptest_config(cases(48))]
@@ -19,13 +26,13 @@ proptest! {
     /// Validation of the tree promises the same; here it is counted out.
     #[test]
     fn points_lie_in_one_leaf_and_in_all_balls_above(
-        mesh in bumpy_mesh(), points in 1..900_u32, branching in 2..20_u32, seed in any::<u64>(),
+        mesh in bumpy_mesh(), points in 1..900_u32, branching in 2..20_u32, clustering in clustering(),
     ) {
         let options = BuildOptions {
             resolution: Resolution::VoxelsAlongLongest(12),
             points: PointCount::About(points),
             branching,
-            seed,
+            clustering,
             ..BuildOptions::default()
         };
         let tree = build(&mesh, &options, &|_| ()).unwrap().asset.tree;
