@@ -3,44 +3,48 @@
 
 mod setting;
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use criterion::{BenchmarkGroup, Criterion, SamplingMode, measurement::WallTime};
+use criterion::{Criterion, SamplingMode};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
 use setting::{FINE, GROUND, bunny, bunny_options, ground_options};
 use vps_build::{
-    BuildOptions, Density, Mesh, PointCount, Resolution, build, models, write_atomically,
+    BuildOptions, Clustering, Density, Mesh, PointCount, Resolution, build, models,
+    write_atomically,
 };
 use vps_compare::{
     CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh, Vps,
     VpsGround,
 };
-use vps_core::{Asset, DistanceField, PointSphereTree, Query, Weight, Work};
+use vps_core::{Asset, Contact, DistanceField, PointSphereTree, Query, Trilinear, Weight, Work};
 use vps_rapier::{Sampling, VpsDispatcher, VpsShape};
 
 /// How far ahead contacts are asked for in metres: rapier's default.
 const PREDICTION: f32 = 0.02;
 const COARSE: u32 = 799;
-/// How often those that are compared take turns.
-const ROUNDS: usize = 5;
+/// Edge lengths in metres of a box that holds a bunny as a whole.
+const AROUND: [f64; 3] = [0.8; 3];
+/// How often those that are compared take turns; odd, for the median.
+const ROUNDS: usize = 3;
 
 fn main() {
     let mut criterion = Criterion::default()
         .configure_from_args()
         .sample_size(10)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(400));
     let mut table = Table::default();
     let bunny = bunny();
     let [fine, coarse] = [FINE, COARSE].map(|points| shell(&bunny, points));
     let poses = rolling(&bunny, &fine);
     ground(&mut criterion, &mut table, &bunny, [&fine, &coarse], &poses);
     core(&mut criterion, &mut table, &fine, &poses);
+    clusterings(&mut table, &bunny, &poses);
     interlocked(&mut criterion, &mut table, &bunny, &fine);
     against_points(&mut criterion, &mut table, &bunny, &poses);
     against_triangles(&mut criterion, &mut table);
@@ -116,34 +120,52 @@ fn rolling(mesh: &Mesh, shell: &Arc<Asset<'static>>) -> Vec<Pose> {
     poses
 }
 
-/// What was measured: seconds, and what else a query did.
+/// Something done for all of so many poses.
+struct Case<'c> {
+    name: &'c str,
+    poses: usize,
+    run: &'c mut dyn FnMut(),
+}
+
+impl<'c> Case<'c> {
+    fn new(name: &'c str, poses: usize, run: &'c mut dyn FnMut()) -> Self {
+        Self { name, poses, run }
+    }
+}
+
+/// Seconds for a pose in each case: medians over rounds in which all take their turn, so that a
+/// machine that gets slower does so for all.
+fn measure<const N: usize>(
+    criterion: &mut Criterion,
+    group_name: &str,
+    mut cases: [Case<'_>; N],
+) -> [f64; N] {
+    let mut rounds = [[0.0; ROUNDS]; N];
+    for round in 0..ROUNDS {
+        let group_name = format!("{group_name}_{round}");
+        let mut group = criterion.benchmark_group(&group_name);
+        group.sampling_mode(SamplingMode::Flat);
+        for (Case { name, poses, run }, times) in cases.iter_mut().zip(&mut rounds) {
+            group.bench_function(*name, |bencher| bencher.iter(&mut *run));
+            let file = target().join(format!("criterion/{group_name}/{name}/new/estimates.json"));
+            let estimates = std::fs::read_to_string(file).expect("criterion has written it");
+            let estimates: serde_json::Value = serde_json::from_str(&estimates).expect("JSON");
+            let ns = estimates["mean"]["point_estimate"]
+                .as_f64()
+                .expect("a mean");
+            times[round] = ns * 1e-9 / *poses as f64;
+        }
+    }
+    rounds.map(|mut times| *times.select_nth_unstable_by(ROUNDS / 2, f64::total_cmp).1)
+}
+
+/// The report.
 #[derive(Default)]
 struct Table {
     text: String,
 }
 
 impl Table {
-    /// Measures something done for all poses; what counts is the mean for one.
-    fn measure<P>(
-        &mut self,
-        group: &mut BenchmarkGroup<'_, WallTime>,
-        group_name: &str,
-        name: &str,
-        poses: &[P],
-        mut query: impl FnMut(&P),
-    ) -> f64 {
-        group.bench_function(name, |bencher| {
-            bencher.iter(|| poses.iter().for_each(&mut query));
-        });
-        let file = target().join(format!("criterion/{group_name}/{name}/new/estimates.json"));
-        let estimates = std::fs::read_to_string(file).expect("criterion has written it");
-        let estimates: serde_json::Value = serde_json::from_str(&estimates).expect("JSON");
-        let ns = estimates["mean"]["point_estimate"]
-            .as_f64()
-            .expect("a mean");
-        ns * 1e-9 / poses.len() as f64
-    }
-
     fn line(&mut self, line: &str) {
         writeln!(self.text, "{line}").expect("memory");
     }
@@ -157,12 +179,6 @@ impl Table {
 
 fn target() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../target")
-}
-
-fn group<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, WallTime> {
-    let mut group = criterion.benchmark_group(name);
-    group.sampling_mode(SamplingMode::Flat);
-    group
 }
 
 /// Time in the unit that fits.
@@ -194,7 +210,7 @@ fn ground(
         vertices: 100,
         resolution: 64,
     };
-    let cases = [
+    let algorithms = [
         (
             "fine_cuboid",
             "VPS 35 596, cuboid",
@@ -223,66 +239,60 @@ fn ground(
         (
             "hull",
             "convex hull, 42 points",
-            ConvexHull.prepare(&scene).unwrap(),
+            ConvexHull.prepare(&scene).expect("a sound scene"),
         ),
         (
             "decomposition",
             "convex decomposition, 8 parts",
-            decomposition.prepare(&scene).unwrap(),
+            decomposition.prepare(&scene).expect("a sound scene"),
         ),
         (
             "trimesh",
             "triangle mesh, box",
-            Trimesh.prepare(&scene).unwrap(),
+            Trimesh.prepare(&scene).expect("a sound scene"),
         ),
     ];
-    let mut rounds: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    let mut runs = algorithms.map(|(name, label, prepared)| {
+        let poses = if name == "trimesh" {
+            &poses[..20]
+        } else {
+            poses
+        };
+        // As an engine keeps them, for bodies that go on from pose to pose.
+        let mut contacts = Contacts::default();
+        let run = move || {
+            for pose in poses {
+                prepared
+                    .query(pose, PREDICTION, &mut contacts)
+                    .expect("a pair of shapes it knows");
+            }
+        };
+        (name, label, poses.len(), run)
+    });
+    let cases = runs
+        .each_mut()
+        .map(|(name, _, poses, run)| Case::new(name, *poses, run));
+    let seconds = measure(criterion, "ground", cases);
+    let [.., hull, decomposition, trimesh] = seconds;
     table.line("# Queries beside parry's\n");
     table.line(
         "Written by `just query-report` (criterion, one core, means over all poses). Poses: ten\n\
-         bunnies fallen on the ground, five steps one after the other at 1.5 s and at 2.5 s. Other\n\
-         programs and the machine's own mood move all times together: compare within the report.\n",
+         bunnies fallen on the ground, five steps one after the other at 1.5 s and at 2.5 s. What\n\
+         stands in one row or is divided takes turns, three rounds of which the median counts;\n\
+         other times are no closer than the machine's mood.\n",
     );
     table.line("## Contact manifolds as an engine asks for them, 20 mm ahead\n");
-    table.line(&format!(
-        "Medians of {ROUNDS} rounds, in each of which all took their turn.\n"
-    ));
     table.line(
         "| algorithm | a query | triangle mesh / this | decomposition / this | this / hull |",
     );
     table.line("|---|---|---|---|---|");
-    for round in 0..ROUNDS {
-        let group_name = format!("ground_{round}");
-        let mut group = group(criterion, &group_name);
-        for (name, _, prepared) in &cases {
-            // As an engine keeps them, for bodies that go on from pose to pose.
-            let mut contacts = Contacts::default();
-            let poses = if *name == "trimesh" {
-                &poses[..20]
-            } else {
-                poses
-            };
-            let time = table.measure(&mut group, &group_name, name, poses, |pose| {
-                prepared
-                    .query(pose, PREDICTION, &mut contacts)
-                    .expect("a pair of shapes it knows");
-            });
-            rounds.entry(name).or_default().push(time);
-        }
-    }
-    let median = |mut times: Vec<f64>| *times.select_nth_unstable_by(ROUNDS / 2, f64::total_cmp).1;
-    let seconds: BTreeMap<_, _> = rounds
-        .into_iter()
-        .map(|(name, times)| (name, median(times)))
-        .collect();
-    for (name, label, _) in &cases {
-        let own = seconds[name];
+    for ((_, label, ..), own) in runs.iter().zip(seconds) {
         table.line(&format!(
             "| {label} | {} | {:.0} | {:.2} | {:.1} |",
             time(own),
-            seconds["trimesh"] / own,
-            seconds["decomposition"] / own,
-            own / seconds["hull"],
+            trimesh / own,
+            decomposition / own,
+            own / hull,
         ));
     }
     table.line(
@@ -297,11 +307,13 @@ fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: 
     let tree = &shell.tree;
     let maps = [Density::Dense, Density::Sparse].map(|density| {
         let ground = Mesh::cuboid(GROUND).expect("a box");
-        let around = Mesh::cuboid([0.8; 3]).expect("a box");
+        let around = Mesh::cuboid(AROUND).expect("a box");
         let options = ground_options(density);
         [asset(&ground, &options), asset(&around, &options)]
     });
-    let cuboid = vps_core::Cuboid::new(vps_core::Vec3::new(1.0, 0.1, 1.0));
+    let cuboids = [GROUND, AROUND].map(|edges| {
+        vps_core::Cuboid::new(vps_core::Vec3::from_array(edges.map(|e| 0.5 * e as f32)))
+    });
     let inside: Vec<_> = poses
         .iter()
         .step_by(5)
@@ -331,16 +343,25 @@ fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: 
     ];
     for (set, label, which, poses, margin) in sets {
         let [dense, sparse] = [&maps[0][which], &maps[1][which]].map(|a| a.voxelmap.trilinear());
+        let cuboid = cuboids[which];
         for (name, what) in QUERIES {
-            let mut group = group(criterion, &format!("{set}_{name}"));
-            let group_name = format!("{set}_{name}");
-            let mut run = |field_name: &str, field: &dyn RunQuery| {
-                table.measure(&mut group, &group_name, field_name, poses, |pose| {
+            let query = |field: &dyn RunQuery| {
+                for pose in poses {
                     field.run(name, tree, *pose, margin, None);
-                })
+                }
             };
-            let exact = (which == 0).then(|| run("cuboid", &cuboid));
-            let [d, s] = [run("dense", &dense), run("sparse", &sparse)];
+            let (mut exact, mut full, mut part) =
+                (|| query(&cuboid), || query(&dense), || query(&sparse));
+            let group_name = format!("{set}_{name}");
+            let [c, d, s] = measure(
+                criterion,
+                &group_name,
+                [
+                    Case::new("cuboid", poses.len(), &mut exact),
+                    Case::new("dense", poses.len(), &mut full),
+                    Case::new("sparse", poses.len(), &mut part),
+                ],
+            );
             let work = Work::default();
             for pose in poses {
                 dense.run(name, tree, *pose, margin, Some(&work));
@@ -348,7 +369,7 @@ fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: 
             let mean = |n: u64| n as f64 / poses.len() as f64;
             table.line(&format!(
                 "| {label}: {what} | {} | {} | {} | {:.2} | {:.0} | {:.0} |",
-                exact.map_or(String::new(), time),
+                time(c),
                 time(d),
                 time(s),
                 s / d,
@@ -407,13 +428,13 @@ impl<F: DistanceField> RunQuery for F {
                         assert!(query.touches() || margin == 0.0 || pose.translation.y > 0.3)
                     }
                     "deepest" => {
-                        std::hint::black_box(query.deepest());
+                        black_box(query.deepest());
                     }
                     "manifold" => {
-                        std::hint::black_box(query.manifold::<4>());
+                        black_box(query.manifold::<4>());
                     }
                     "wrench" => {
-                        std::hint::black_box(query.wrench(vps_core::Vec3::ZERO, Weight::Area));
+                        black_box(query.wrench(vps_core::Vec3::ZERO, Weight::Area));
                     }
                     _ => {
                         let level = name.as_bytes()[name.len() - 1] - b'0';
@@ -423,7 +444,7 @@ impl<F: DistanceField> RunQuery for F {
                         } else {
                             sum = listed(&query, tree, level.into());
                         }
-                        std::hint::black_box(sum);
+                        black_box(sum);
                     }
                 }
             }};
@@ -457,6 +478,40 @@ fn listed<F: DistanceField, W: vps_core::CountWork>(
     sum + deepest
 }
 
+/// What searches look at, by how the points were put into clusters.
+fn clusterings(table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
+    let dense = asset(
+        &Mesh::cuboid(GROUND).expect("a box"),
+        &ground_options(Density::Dense),
+    );
+    let field = dense.voxelmap.trilinear();
+    table.line("## Clusters: halves, and the paper's nearest\n");
+    table.line("The fine bunny on the dense map of the ground, 20 mm ahead.\n");
+    table.line("| query | spheres, halves | nearest | points, halves | nearest |");
+    table.line("|---|---|---|---|---|");
+    let trees = [Clustering::Halves, Clustering::Nearest { seed: 1 }].map(|clustering| {
+        let options = BuildOptions {
+            clustering,
+            ..bunny_options(PointCount::About(FINE))
+        };
+        asset(bunny, &options).tree
+    });
+    for (name, what) in QUERIES {
+        let [halves, nearest] = trees.each_ref().map(|tree| {
+            let work = Work::default();
+            for pose in poses {
+                field.run(name, tree, *pose, PREDICTION, Some(&work));
+            }
+            [work.spheres(), work.points()].map(|n| n as f64 / poses.len() as f64)
+        });
+        table.line(&format!(
+            "| {what} | {:.0} | {:.0} | {:.0} | {:.0} |",
+            halves[0], nearest[0], halves[1], nearest[1]
+        ));
+    }
+    table.line("");
+}
+
 /// Two fine bunnies, one ear in the other.
 fn interlocked(
     criterion: &mut Criterion,
@@ -476,22 +531,22 @@ fn interlocked(
         .collect();
     table.line("## Bunny on bunny, interlocked, both fine\n");
     table.line("| algorithm | a query | triangle mesh on triangle mesh / this |\n|---|---|---|");
-    let mut group = group(criterion, "interlocked");
-    let own = {
-        let dispatcher = VpsDispatcher::default();
-        let prepared = Prepared {
-            body: shape.clone(),
-            ground: shape,
-            dispatcher: Arc::new(dispatcher),
-            size: Vec::new(),
-        };
-        let mut contacts = Contacts::default();
-        table.measure(&mut group, "interlocked", "vps", &poses, |pose| {
+    let prepared = Prepared {
+        body: shape.clone(),
+        ground: shape,
+        dispatcher: Arc::new(VpsDispatcher::default()),
+        size: Vec::new(),
+    };
+    let mut contacts = Contacts::default();
+    let mut run = || {
+        for pose in &poses {
             prepared
                 .query(pose, PREDICTION, &mut contacts)
                 .expect("VPS shapes");
-        })
+        }
     };
+    let cases = [Case::new("vps", poses.len(), &mut run)];
+    let [own] = measure(criterion, "interlocked", cases);
     let theirs = {
         let prepared = Prepared {
             body: mesh.clone(),
@@ -534,32 +589,32 @@ fn against_points(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, po
         let tree = asset(bunny, &options).tree;
         let count = tree.point_count();
         let name = format!("points_{count}");
-        let mut group = group(criterion, &name);
-        let margin = 0.001;
-        let mut run = |what: &str, query: &dyn Fn(&Query<'_, _>)| {
-            table.measure(&mut group, &name, what, &poses, |pose| {
-                query(&Query::new(&tree, &field, *pose).with_margin(margin));
-            })
+        let queries = || {
+            let pose = |p: &Pose| Query::new(&tree, &field, *p).with_margin(0.001);
+            poses.iter().map(pose)
         };
         let sum = std::cell::Cell::new(0.0_f32);
-        let all = run("all", &|q| {
-            q.for_each_contact(|c| sum.set(sum.get() + c.penetration));
-        });
-        let deepest = run("deepest", &|q| {
-            std::hint::black_box(q.deepest());
-        });
-        let segments = run("segments", &|q| {
-            q.for_each_segment(4, |_, c| sum.set(sum.get() + c.penetration));
-        });
-        let manifold = run("manifold", &|q| {
-            std::hint::black_box(q.manifold::<4>());
-        });
+        let add = |contact: Contact| sum.set(sum.get() + contact.penetration);
+        let [all, deepest, segments, manifold] = measure(
+            criterion,
+            &name,
+            [
+                Case::new("all", poses.len(), &mut || {
+                    queries().for_each(|q| q.for_each_contact(add));
+                }),
+                Case::new("deepest", poses.len(), &mut || {
+                    queries().for_each(|q| _ = black_box(q.deepest()));
+                }),
+                Case::new("segments", poses.len(), &mut || {
+                    queries().for_each(|q| q.for_each_segment(4, |_, c| add(c)));
+                }),
+                Case::new("manifold", poses.len(), &mut || {
+                    queries().for_each(|q| _ = black_box(q.manifold::<4>()));
+                }),
+            ],
+        );
         let mut contacts = 0;
-        for pose in &poses {
-            Query::new(&tree, &field, *pose)
-                .with_margin(margin)
-                .for_each_contact(|_| contacts += 1);
-        }
+        queries().for_each(|q| q.for_each_contact(|_| contacts += 1));
         let contacts = contacts as f64 / poses.len() as f64;
         table.line(&format!(
             "| {count} | {} | {contacts:.0} | {:.0} | {} | {} | {} |",
@@ -598,29 +653,37 @@ fn against_triangles(criterion: &mut Criterion, table: &mut Table) {
         .collect();
     table.line("## Time against triangles of the source mesh, a torus in a torus\n");
     table.line("| triangles | points | manifold of 4 | force and torque |\n|---|---|---|---|");
-    for detail in [44, 264, 932] {
+    let tori = [44, 264, 932].map(|detail| {
         let mesh = models::torus(detail);
-        let torus = asset(&mesh, &options);
+        (mesh.triangles().len(), asset(&mesh, &options))
+    });
+    let queries = |torus: &Asset<'_>, run: &dyn Fn(&Query<'_, Trilinear<'_>>)| {
         let field = torus.voxelmap.trilinear();
-        let name = format!("triangles_{}", mesh.triangles().len());
-        let mut group = group(criterion, &name);
-        let manifold = table.measure(&mut group, &name, "manifold", &poses, |pose| {
-            std::hint::black_box(
-                Query::new(&torus.tree, &field, *pose)
-                    .with_margin(PREDICTION)
-                    .manifold::<4>(),
-            );
-        });
-        let wrench = table.measure(&mut group, &name, "wrench", &poses, |pose| {
-            let query = Query::new(&torus.tree, &field, *pose);
-            std::hint::black_box(query.wrench(vps_core::Vec3::ZERO, Weight::Area));
-        });
+        for pose in &poses {
+            run(&Query::new(&torus.tree, &field, *pose).with_margin(PREDICTION));
+        }
+    };
+    let mut take_turns = |what: &str, run: &dyn Fn(&Query<'_, Trilinear<'_>>)| {
+        let names = tori.each_ref().map(|(triangles, _)| triangles.to_string());
+        let mut runs = tori.each_ref().map(|(_, torus)| || queries(torus, run));
+        let [a, b, c] = &mut runs;
+        let cases = [
+            Case::new(&names[0], poses.len(), a),
+            Case::new(&names[1], poses.len(), b),
+            Case::new(&names[2], poses.len(), c),
+        ];
+        measure(criterion, &format!("triangles_{what}"), cases)
+    };
+    let manifold = take_turns("manifold", &|q| _ = black_box(q.manifold::<4>()));
+    let wrench = take_turns("wrench", &|q| {
+        _ = black_box(q.wrench(vps_core::Vec3::ZERO, Weight::Area));
+    });
+    for (i, (triangles, torus)) in tori.iter().enumerate() {
         table.line(&format!(
-            "| {} | {} | {} | {} |",
-            mesh.triangles().len(),
+            "| {triangles} | {} | {} | {} |",
             torus.tree.point_count(),
-            time(manifold),
-            time(wrench),
+            time(manifold[i]),
+            time(wrench[i]),
         ));
     }
     table.line("\nMust: flat within 10 %.");

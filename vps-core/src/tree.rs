@@ -158,7 +158,7 @@ impl<'a> PointSphereTree<'a> {
         if let Some(i) = points.iter().position(|p| !position(p).is_finite()) {
             return Err(TreeError::Point(i));
         }
-        if let Some(i) = normals.iter().position(|n| !is_unit(position(n))) {
+        if let Some(i) = normals.iter().position(|n| !is_unit(position(n), 1e-3)) {
             return Err(TreeError::Normal(i));
         }
         let is_area = |a: &f32| a.is_finite() && *a >= 0.0;
@@ -223,7 +223,8 @@ impl<'a> PointSphereTree<'a> {
                     return Err(TreeError::ParentPoint(start + i));
                 }
                 let center = Vec3::from_array(cluster.center);
-                if !is_unit(Vec3::from_array(cluster.normal)) {
+                // Bounds rely on it.
+                if !is_unit(Vec3::from_array(cluster.normal), 1e-6) {
                     return Err(TreeError::ClusterNormal(start + i));
                 }
                 let outside = |&p: &usize| {
@@ -370,6 +371,6 @@ impl<'a> PointSphereTree<'a> {
     }
 }
 
-fn is_unit(normal: Vec3) -> bool {
-    (normal.length() - 1.0).abs() < 1e-3
+fn is_unit(normal: Vec3, tolerance: f32) -> bool {
+    (normal.length() - 1.0).abs() < tolerance
 }
