@@ -3,7 +3,6 @@ use wide::f32x4;
 
 use crate::dispatch::dispatch;
 use crate::lanes::{Vectors, lanes_in};
-use crate::query::TOP;
 use crate::search::{Found, Goal};
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
@@ -107,10 +106,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             return ContactManifold::EMPTY;
         }
         let mut near = Near::new(self.margin);
-        dispatch(
-            #[inline(always)]
-            || self.search(TOP, &mut near),
-        );
+        self.find_from_hint(&mut near);
         near.drop_shallow();
         ContactManifold::pick(
             || near.deepest,

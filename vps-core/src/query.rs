@@ -57,6 +57,8 @@ pub struct Query<'q, F: ?Sized, W = ()> {
     /// Whether the pose is finite.
     pub(crate) is_posed: bool,
     pub(crate) margin: f32,
+    /// A point to begin with.
+    pub(crate) hint: Option<u32>,
     /// A ball and the points in it are moved by rounding, each on its own.
     pub(crate) ball_slack: f32,
     pub(crate) work: W,
@@ -82,6 +84,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             translation,
             is_posed: shell_to_field.is_finite(),
             margin: 0.0,
+            hint: None,
             ball_slack: 16.0 * f32::EPSILON * reach,
             work: (),
         }
@@ -96,6 +99,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             translation: self.translation,
             is_posed: self.is_posed,
             margin: self.margin,
+            hint: self.hint,
             ball_slack: self.ball_slack,
             work,
         }
@@ -106,6 +110,14 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Also gives the points that are up to `margin` metres away from the solid.
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
+    }
+
+    /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and
+    /// [`manifold`](Self::manifold) begin with a point that is likely to be deep, such as the deepest
+    /// of the step before. What they give is the same; of a point there is not, nothing comes.
+    pub fn with_hint(self, point: u32) -> Self {
+        let hint = Some(point).filter(|&p| (p as usize) < self.tree.point_count());
+        Self { hint, ..self }
     }
 
     /// Calls `visit` with every contact, in the order of the points.
@@ -132,18 +144,21 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 
     /// Whether there is any contact; stops at the first.
     pub fn touches(&self) -> bool {
-        let any = Any {
+        let mut any = Any {
             margin: self.margin,
             found: false,
         };
-        self.find(any).found
+        self.find_from_hint(&mut any);
+        any.found
     }
 
     /// The contact with the largest penetration δ, the first of equally deep ones.
     ///
     /// Branch and bound: clusters that cannot hold a deeper point are left out.
     pub fn deepest(&self) -> Option<Contact> {
-        self.find(Deepest::new(self.margin)).found
+        let mut deepest = Deepest::new(self.margin);
+        self.find_from_hint(&mut deepest);
+        deepest.found
     }
 
     /// The point of the shell with the largest penetration, however far outside: where the bodies
@@ -165,6 +180,23 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             || self.search(TOP, &mut goal),
         );
         goal
+    }
+
+    /// The same for goals that may be offered a point twice.
+    #[inline(always)]
+    pub(crate) fn find_from_hint<G: Goal>(&self, goal: &mut G) {
+        dispatch(
+            #[inline(always)]
+            || {
+                let goes_on = match self.hint {
+                    Some(point) if self.is_posed => self.offer_points((point, point + 1), goal),
+                    _ => true,
+                };
+                if goes_on {
+                    self.search(TOP, goal);
+                }
+            },
+        );
     }
 
     /// A single point, if it is in contact.

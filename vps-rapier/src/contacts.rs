@@ -5,7 +5,7 @@ use rapier3d::parry::query::{
     ContactManifold as ParryManifold, ContactManifoldsWorkspace, TrackedContact,
     TypedWorkspaceData, WorkspaceData,
 };
-use rapier3d::parry::shape::PackedFeatureId;
+use rapier3d::parry::shape::{FeatureId, PackedFeatureId};
 use vps_core::{Contact, Vec3};
 
 use crate::pair::Pair;
@@ -77,7 +77,13 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     }
     let mut old = std::mem::take(manifolds);
     let shell_to_field = pair.shell_to_field(pos12);
-    let picked = pair.manifold::<MANIFOLD_SIZE>(pos12, prediction);
+    let first = old.first().and_then(|m| m.points.first());
+    let deepest = first.map(|c| pair.in_order(c.fid1, c.fid2).0.unpack());
+    let hint = match deepest {
+        Some(FeatureId::Vertex(point)) => Some(point),
+        _ => None,
+    };
+    let picked = pair.manifold::<MANIFOLD_SIZE>(pos12, prediction, hint);
     for contact in picked.contacts() {
         let surface = SurfaceContact::new(pair, &shell_to_field, contact);
         let (n1, n2) = pair.in_order(surface.shell_normal, surface.field_normal);

@@ -80,10 +80,18 @@ impl<'s> Pair<'s> {
     }
 
     /// A few of the contacts up to `margin` metres away, `pos12` being the pose of the second shape
-    /// in the frame of the first.
-    pub(crate) fn manifold<const N: usize>(&self, pos12: &Pose, margin: f32) -> ContactManifold<N> {
+    /// in the frame of the first; found faster if the deepest is known from the step before.
+    pub(crate) fn manifold<const N: usize>(
+        &self,
+        pos12: &Pose,
+        margin: f32,
+        hint: Option<u32>,
+    ) -> ContactManifold<N> {
         let pose = self.shell_to_field(pos12);
-        with_field!(self, field => Query::new(self.tree, field, pose).with_margin(margin).manifold())
+        with_field!(self, field => {
+            let query = Query::new(self.tree, field, pose).with_margin(margin);
+            hint.map_or(query, |point| query.with_hint(point)).manifold()
+        })
     }
 
     /// The deepest contact up to `margin` metres away.

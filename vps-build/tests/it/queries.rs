@@ -126,6 +126,13 @@ fn check_query<F: DistanceField + ?Sized>(
     } else {
         prop_assert!(manifold.contacts().is_empty());
     }
+    let deep = query.deepest().map_or(u32::MAX, |c| c.point);
+    for hint in [0, tree.point_count() as u32 / 2, deep] {
+        let hinted = query.with_hint(hint);
+        prop_assert_eq!(hinted.touches(), query.touches());
+        prop_assert_eq!(hinted.deepest(), query.deepest());
+        prop_assert_eq!(hinted.manifold::<5>(), manifold);
+    }
     check_time_critical(&query, center, &flat)?;
 
     let work = Work::default();
