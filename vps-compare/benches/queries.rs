@@ -301,8 +301,8 @@ fn ground(
 }
 
 /// The queries themselves.
-fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: &[Pose]) {
-    let tree = &shell.tree;
+fn core(criterion: &mut Criterion, table: &mut Table, fine: &Asset<'_>, poses: &[Pose]) {
+    let shell = Shell::new(&fine.tree);
     let maps = [Density::Dense, Density::Sparse].map(|density| {
         let ground = Mesh::cuboid(GROUND).expect("a box");
         let around = Mesh::cuboid(AROUND).expect("a box");
@@ -315,7 +315,7 @@ fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: 
     let inside: Vec<_> = poses
         .iter()
         .step_by(5)
-        .map(|p| Pose::from_parts(-(p.rotation * shell.mass.center()), p.rotation))
+        .map(|p| Pose::from_parts(-(p.rotation * fine.mass.center()), p.rotation))
         .collect();
     let apart: Vec<_> = poses
         .iter()
@@ -345,7 +345,7 @@ fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: 
         for (name, what) in QUERIES {
             let query = |field: &dyn RunQuery| {
                 for pose in poses {
-                    field.run(name, tree, *pose, margin, None);
+                    field.run(name, &shell, *pose, margin, None);
                 }
             };
             let (mut exact, mut full, mut part) =
@@ -362,7 +362,7 @@ fn core(criterion: &mut Criterion, table: &mut Table, shell: &Asset<'_>, poses: 
             );
             let work = Work::default();
             for pose in poses {
-                dense.run(name, tree, *pose, margin, Some(&work));
+                dense.run(name, &shell, *pose, margin, Some(&work));
             }
             let mean = |n: u64| n as f64 / poses.len() as f64;
             table.line(&format!(
@@ -398,26 +398,12 @@ const QUERIES: [(&str, &str); 10] = [
 
 /// Queries by name, so that each is compiled once for a kind of field.
 trait RunQuery {
-    fn run(
-        &self,
-        name: &str,
-        tree: &PointSphereTree<'_>,
-        pose: Pose,
-        margin: f32,
-        work: Option<&Work>,
-    );
+    fn run(&self, name: &str, shell: &Shell<'_>, pose: Pose, margin: f32, work: Option<&Work>);
 }
 
 impl<F: DistanceField> RunQuery for F {
-    fn run(
-        &self,
-        name: &str,
-        tree: &PointSphereTree<'_>,
-        pose: Pose,
-        margin: f32,
-        work: Option<&Work>,
-    ) {
-        let query = Query::new(tree, self, pose).with_margin(margin);
+    fn run(&self, name: &str, shell: &Shell<'_>, pose: Pose, margin: f32, work: Option<&Work>) {
+        let query = Query::new(shell.tree, self, pose).with_margin(margin);
         macro_rules! ask {
             ($query:expr) => {{
                 let query = $query;
@@ -440,7 +426,7 @@ impl<F: DistanceField> RunQuery for F {
                         if name.starts_with("segments") {
                             query.for_each_segment(level.into(), |_, c| sum += c.penetration);
                         } else {
-                            sum = listed(&query, tree, level.into());
+                            sum = listed(&query, &shell.ends[usize::from(level) - 1]);
                         }
                         black_box(sum);
                     }
@@ -455,25 +441,41 @@ impl<F: DistanceField> RunQuery for F {
 }
 
 /// The segmented traverse as section 2.4 has it: all contacts are listed, and each replaces that of
-/// its segment if it is deeper.
+/// its segment if it is deeper. `ends` has the first point behind each segment.
 fn listed<F: DistanceField, W: vps_core::CountWork>(
     query: &Query<'_, F, W>,
-    tree: &PointSphereTree<'_>,
-    level: u32,
+    ends: &[usize],
 ) -> f32 {
-    let segments = tree.level(level);
-    let (mut segment, mut end) = (0, tree.points_below(level, &segments[0]).end);
+    let mut segment = 0;
     let (mut deepest, mut sum) = (0.0_f32, 0.0);
     query.for_each_contact(|contact| {
-        while contact.point as usize >= end {
-            segment += 1;
-            end = tree.points_below(level, &segments[segment]).end;
+        if contact.point as usize >= ends[segment] {
+            segment += ends[segment..].partition_point(|&end| end <= contact.point as usize);
             sum += deepest;
             deepest = 0.0;
         }
         deepest = deepest.max(contact.penetration);
     });
     sum + deepest
+}
+
+/// A shell, and for each level the first points behind its segments.
+struct Shell<'t> {
+    tree: &'t PointSphereTree<'t>,
+    ends: Vec<Vec<usize>>,
+}
+
+impl<'t> Shell<'t> {
+    fn new(tree: &'t PointSphereTree<'t>) -> Self {
+        let ends = |level: u32| {
+            let end = |cluster| tree.points_below(level, cluster).end;
+            tree.level(level).iter().map(end).collect()
+        };
+        Self {
+            tree,
+            ends: (1..=tree.level_count()).map(ends).collect(),
+        }
+    }
 }
 
 /// What searches look at, by how the points were put into clusters.
@@ -496,9 +498,9 @@ fn clusterings(table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
     });
     for (name, what) in QUERIES {
         let [halves, nearest] = trees.each_ref().map(|tree| {
-            let work = Work::default();
+            let (shell, work) = (Shell::new(tree), Work::default());
             for pose in poses {
-                field.run(name, tree, *pose, PREDICTION, Some(&work));
+                field.run(name, &shell, *pose, PREDICTION, Some(&work));
             }
             [work.spheres(), work.points()].map(|n| n as f64 / poses.len() as f64)
         });

@@ -37,6 +37,7 @@
 //! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
 //! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
 //! | as much as there is time for | [`Query::time_critical`] | what you allow |
+//! | the same sooner, from one step to the next | [`Query::with_hint`] | a little less |
 //! | a fast body not to be missed | [`Sweep::first_contact`] | some touches |
 //! | two bodies, either way or both | [`BodyPair`] | one or two queries |
 //!
