@@ -3,6 +3,7 @@ use wide::f32x4;
 
 use crate::dispatch::dispatch;
 use crate::lanes::{Vectors, lanes_in};
+use crate::query::Deepest;
 use crate::search::{Found, Goal};
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
@@ -109,7 +110,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         self.find_from_hint(&mut near);
         near.drop_shallow();
         ContactManifold::pick(
-            || near.deepest,
+            || near.deepest.found,
             |deepest| {
                 let at = self.rotation * deepest.position + self.translation;
                 let inward = self.rotation.transpose() * self.field.inward_direction(at);
@@ -157,7 +158,7 @@ struct Near {
     margin: f32,
     /// Contacts less deep are not kept.
     least: f32,
-    deepest: Option<Contact>,
+    deepest: Deepest,
     kept: [Group; KEPT],
     len: usize,
     is_full: bool,
@@ -173,7 +174,7 @@ impl Near {
         Self {
             margin,
             least: -margin,
-            deepest: None,
+            deepest: Deepest::new(margin),
             kept: [none; KEPT],
             len: 0,
             is_full: false,
@@ -200,7 +201,7 @@ impl Near {
         }
         if self.len == KEPT {
             self.is_full = true;
-            self.least = self.deepest.map_or(-self.margin, |d| d.penetration);
+            self.least = self.deepest.least;
             return;
         }
         self.kept[self.len] = group;
@@ -230,17 +231,14 @@ impl Goal for Near {
 
     #[inline(always)]
     fn offer(&mut self, found: &Found<'_>) -> bool {
-        let deepest = self.deepest.map_or(f32::NEG_INFINITY, |d| d.penetration);
-        let deeper = found.counts & found.penetrations.simd_ge(f32x4::splat(deepest));
-        for contact in found.each_in(deeper) {
-            if contact.is_deeper_than(self.deepest.as_ref()) {
-                self.deepest = Some(contact);
-                self.least = if self.is_full {
-                    contact.penetration
-                } else {
-                    least_deep(contact.penetration, self.margin)
-                };
-            }
+        let before = self.deepest.least;
+        self.deepest.offer(found);
+        if self.deepest.least > before {
+            self.least = if self.is_full {
+                self.deepest.least
+            } else {
+                least_deep(self.deepest.least, self.margin)
+            };
         }
         if !self.is_full {
             let none = f32x4::splat(f32::NEG_INFINITY);

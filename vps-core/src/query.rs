@@ -1,4 +1,5 @@
 use glamx::{Mat3, Pose3, Vec3};
+use wide::f32x4;
 
 use crate::dispatch::dispatch;
 use crate::lanes::Vectors;
@@ -268,7 +269,8 @@ impl Goal for Any {
 
 /// The deepest contact.
 pub(crate) struct Deepest {
-    least: f32,
+    /// Its penetration; that of the shallowest there may be as long as none is found.
+    pub(crate) least: f32,
     pub(crate) found: Option<Contact>,
 }
 
@@ -291,7 +293,8 @@ impl Goal for Deepest {
 
     #[inline(always)]
     fn offer(&mut self, found: &Found<'_>) -> bool {
-        for contact in found.each() {
+        let deep = found.counts & found.penetrations.simd_ge(f32x4::splat(self.least));
+        for contact in found.each_in(deep) {
             if contact.is_deeper_than(self.found.as_ref()) {
                 self.least = contact.penetration;
                 self.found = Some(contact);

@@ -48,8 +48,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             sum: Sum::new(self.tree, center, Weight::Area, -self.margin),
             deepest: Deepest::new(self.margin),
         };
+        let clusters = self.tree.clusters();
         for level in 1..=self.tree.level_count() {
-            let clusters = self.tree.clusters();
             let mut pass = Pass::default();
             let mut bound = -self.margin;
             let mut stopped = false;
@@ -83,7 +83,6 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             }
         }
         let leaf_level = self.tree.level_count();
-        let leaves = self.tree.clusters();
         all.deepest.found = estimate.deepest;
         let mut stopped = false;
         let mut test = |leaf: u32, _: f32, all: &mut Everything<'_>| {
@@ -91,7 +90,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 stopped = true;
                 return false;
             }
-            let leaf = &leaves[leaf as usize];
+            let leaf = &clusters[leaf as usize];
             tested += u64::from(leaf.count);
             self.offer_points((leaf.first, leaf.first + leaf.count), all)
         };
