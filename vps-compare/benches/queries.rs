@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, SamplingMode};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
-use setting::{FINE, GROUND, bunny, bunny_options, ground_options};
+use setting::{AROUND, FINE, GROUND, bunny, bunny_options, cuboid, ground_options};
 use vps_build::{
     BuildOptions, Clustering, Density, Mesh, PointCount, Resolution, build, models,
     write_atomically,
@@ -27,8 +27,6 @@ use vps_rapier::{Sampling, VpsDispatcher, VpsShape};
 /// How far ahead contacts are asked for in metres: rapier's default.
 const PREDICTION: f32 = 0.02;
 const COARSE: u32 = 799;
-/// Edge lengths in metres of a box that holds a bunny as a whole.
-const AROUND: [f64; 3] = [0.8; 3];
 /// How often those that are compared take turns; odd, for the median.
 const ROUNDS: usize = 3;
 
@@ -309,9 +307,7 @@ fn core(criterion: &mut Criterion, table: &mut Table, fine: &Asset<'_>, poses: &
         let options = ground_options(density);
         [asset(&ground, &options), asset(&around, &options)]
     });
-    let cuboids = [GROUND, AROUND].map(|edges| {
-        vps_core::Cuboid::new(vps_core::Vec3::from_array(edges.map(|e| 0.5 * e as f32)))
-    });
+    let cuboids = [GROUND, AROUND].map(cuboid);
     let inside: Vec<_> = poses
         .iter()
         .step_by(5)

@@ -9,16 +9,15 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use setting::{FINE, GROUND, bunny, bunny_options, ground_options};
+use setting::{AROUND, FINE, GROUND, bunny, bunny_options, cuboid, ground_options};
 use vps_build::{
     BuildOptions, Density, Mesh, PointCount, build, read_asset, write_asset, write_atomically,
 };
-use vps_core::{Asset, CountWork, Cuboid, DistanceField, Pose3, Quat, Query, Vec3, Weight, Work};
+use vps_core::{Asset, CountWork, DistanceField, Pose3, Quat, Query, Vec3, Weight, Work};
 
 const POSES: u32 = 20;
 /// How often more all poses are asked in the second of two runs; the difference is what counts.
 const TIMES: u64 = 10;
-const HALF_EXTENTS: Vec3 = Vec3::new(1.0, 0.1, 1.0);
 
 const ROWS: [(&str, &str); 11] = [
     ("deepest", "cuboid"),
@@ -54,7 +53,7 @@ fn file(name: &str) -> PathBuf {
 
 fn report() {
     let ground = Mesh::cuboid(GROUND).expect("a box");
-    let around = Mesh::cuboid([0.8; 3]).expect("a box");
+    let around = Mesh::cuboid(AROUND).expect("a box");
     let make = |name: &str, mesh: &Mesh, options: &BuildOptions| {
         let asset = build(mesh, options, &|_| ()).expect("a sound mesh").asset;
         write_asset(&file(name), &asset).expect("a place for assets");
@@ -129,14 +128,7 @@ fn run(query: &str, field: &str, times: u64, work: Option<&Work>) {
         None => (query, false),
     };
     if field == "cuboid" {
-        return ask(
-            query,
-            &shell,
-            &Cuboid::new(HALF_EXTENTS),
-            is_inside,
-            times,
-            work,
-        );
+        return ask(query, &shell, &cuboid(GROUND), is_inside, times, work);
     }
     let name = if is_inside {
         format!("around_{field}")
@@ -172,7 +164,8 @@ fn ask<F: DistanceField>(
                 .points()
                 .iter()
                 .map(|&p| pose.transform_point(p.into()).y);
-            pose.translation.y += HALF_EXTENTS.y - 0.001 - low.fold(f32::INFINITY, f32::min);
+            pose.translation.y +=
+                0.5 * GROUND[1] as f32 - 0.001 - low.fold(f32::INFINITY, f32::min);
         }
         let margin = if is_inside { 0.0 } else { 0.02 };
         let asked = Query::new(tree, field, pose).with_margin(margin);
