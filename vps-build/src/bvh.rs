@@ -124,9 +124,13 @@ impl Bvh {
                 let lane = hits.trailing_zeros() as usize;
                 hits &= hits - 1;
                 let child = node.children[lane];
+                let distance = distances[lane / 4][lane % 4];
+                // A triangle before it may have been closer.
+                if distance > limit {
+                    continue;
+                }
                 if child & TRIANGLE == 0 {
                     // The closest goes on top.
-                    let distance = distances[lane / 4][lane % 4];
                     let mut place = top;
                     while place > bottom && stack[place - 1].0 < distance {
                         stack[place] = stack[place - 1];

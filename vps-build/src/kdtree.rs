@@ -100,6 +100,9 @@ impl<'p> KdTree<'p> {
     /// Up to `count` present points closest to `to`, closest first; of equally close ones the one
     /// with the lowest number.
     pub(crate) fn closest(&self, to: DVec3, count: usize) -> Vec<usize> {
+        if count == 0 {
+            return Vec::new();
+        }
         let mut found: Vec<(f64, u32)> = Vec::with_capacity(count + 1);
         self.search(0, to, count, &mut found);
         found.into_iter().map(|(_, p)| p as usize).collect()
@@ -107,17 +110,13 @@ impl<'p> KdTree<'p> {
 
     fn search(&self, node: usize, to: DVec3, count: usize, found: &mut Vec<(f64, u32)>) {
         let this = &self.nodes[node];
-        let too_far = |node: &Node, found: &[(f64, u32)]| {
-            let gap = to.distance_squared(to.clamp(node.low, node.high));
-            found.len() == count && found.last().is_none_or(|worst| gap > worst.0)
-        };
-        if this.present == 0 || too_far(this, found) {
-            return;
-        }
         if 2 * node + 1 >= self.nodes.len() {
             for &p in &self.order[this.start as usize..this.end as usize] {
                 if self.present[p as usize] {
                     let entry = (to.distance_squared(self.points[p as usize]), p);
+                    if found.len() == count && found.last().is_some_and(|worst| *worst < entry) {
+                        continue;
+                    }
                     let at = found.partition_point(|e| *e < entry);
                     found.insert(at, entry);
                     found.truncate(count);
@@ -125,16 +124,17 @@ impl<'p> KdTree<'p> {
             }
             return;
         }
-        let mut children = [2 * node + 1, 2 * node + 2];
         let gap = |i: usize| {
             let node = &self.nodes[i];
             to.distance_squared(to.clamp(node.low, node.high))
         };
-        if self.nodes[children[1]].present > 0 && gap(children[1]) < gap(children[0]) {
+        let mut children = [2 * node + 1, 2 * node + 2].map(|i| (gap(i), i));
+        if children[1].0 < children[0].0 {
             children.swap(0, 1);
         }
-        for child in children {
-            if self.nodes[child].present > 0 {
+        for (gap, child) in children {
+            let is_closer = found.len() < count || found.last().is_some_and(|worst| gap <= worst.0);
+            if is_closer && self.nodes[child].present > 0 {
                 self.search(child, to, count, found);
             }
         }
