@@ -55,6 +55,7 @@ impl CollisionAlgorithm for Vps<'_> {
         };
         let dispatcher = VpsDispatcher {
             sampling: self.sampling,
+            ..VpsDispatcher::default()
         };
         Ok(Prepared {
             body: VpsShape::new(body).with_role(Role::Pointshell).into(),

@@ -1,47 +1,87 @@
 use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
+use rapier3d::parry::query::details::{
+    NormalConstraints, ShapeCastOptions, cast_shapes_composite_shape_shape,
+    cast_shapes_nonlinear_composite_shape_shape, cast_shapes_nonlinear_shape_composite_shape,
+    cast_shapes_shape_composite_shape, closest_points_composite_shape_shape,
+    closest_points_shape_composite_shape, contact_composite_shape_shape,
+    contact_shape_composite_shape, distance_composite_shape_shape, distance_shape_composite_shape,
+    intersection_test_composite_shape_shape, intersection_test_shape_composite_shape,
+};
 use rapier3d::parry::query::{
     ClosestPoints, Contact as ParryContact, ContactManifold, ContactManifoldsWorkspace,
-    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit,
-    ShapeCastStatus, ShapeDistance, ShapeIntersection, Unsupported,
+    DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
 };
-use rapier3d::parry::shape::Shape;
+use rapier3d::parry::shape::{Compound, Shape};
 
-use crate::contacts::{SurfaceContact, update_manifolds};
-use crate::pair::{Pair, Sampling};
+use crate::cast::cast;
+use crate::compound::{compound_of_vps, update_parts};
+use crate::contact::PairContact;
+use crate::manifolds::update_manifolds;
+use crate::pair::Pair;
+use crate::real::{core_pose, core_real, real, vector};
+use crate::workspace::Workspace;
 
-/// Answers all queries about pairs with a [`VpsShape`](crate::VpsShape), and says `Unsupported` to
-/// all others: chain it with parry's own dispatcher.
+/// How a voxelmap is sampled between the centres of its voxels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampling {
+    /// Trilinear interpolation: penetration changes smoothly as a body rolls.
+    #[default]
+    Trilinear,
+    /// Eq. 4 of the paper.
+    Local,
+}
+
+/// What an engine gets of a pair's contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Manifolds {
+    /// Four contacts: the deepest, and those that spread over the largest area (section 3.2), in
+    /// one manifold for each normal.
+    #[default]
+    Spread,
+    /// The deepest contact of each segment of a level of the shell's tree (section 2.4), 1 being the
+    /// top, in a manifold of its own. rapier's `contact_clustering` would join them again: switch it
+    /// off.
+    Segments(u32),
+}
+
+/// Answers all queries about pairs with a [`VpsShape`](crate::VpsShape), also inside of a compound,
+/// and says `Unsupported` to all others: chain it with parry's own dispatcher.
 ///
 /// This is where Bullet's `btCollisionAlgorithm` was (section 3.2).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VpsDispatcher {
     /// How voxelmaps are sampled.
     pub sampling: Sampling,
+    /// What an engine gets.
+    pub manifolds: Manifolds,
 }
 
-/// Advances of a shape cast before it gives up.
-const CAST_STEPS: usize = 64;
+/// What is to be done about two shapes.
+enum Task<'s> {
+    Pair(Pair<'s>),
+    /// Part by part of the first shape.
+    PartsOfFirst(&'s Compound),
+    /// Part by part of the second shape.
+    PartsOfSecond(&'s Compound),
+}
 
 impl VpsDispatcher {
-    fn pair<'s>(&self, g1: &'s dyn Shape, g2: &'s dyn Shape) -> Result<Pair<'s>, Unsupported> {
-        Pair::of(g1, g2, self.sampling).ok_or(Unsupported)
+    fn task<'s>(&self, g1: &'s dyn Shape, g2: &'s dyn Shape) -> Result<Task<'s>, Unsupported> {
+        if let Some(compound) = compound_of_vps(g1) {
+            return Ok(Task::PartsOfFirst(compound));
+        }
+        if let Some(compound) = compound_of_vps(g2) {
+            return Ok(Task::PartsOfSecond(compound));
+        }
+        let pair = Pair::of(g1, g2, self.sampling);
+        pair.map(Task::Pair).ok_or(Unsupported)
     }
-}
 
-/// The closest points of the two shapes, or the deepest ones.
-fn closest(pair: &Pair<'_>, pos12: &Pose, within: Real) -> Option<ParryContact> {
-    let contact = pair.deepest(pos12, within)?;
-    let surface = SurfaceContact::new(pair, &pair.shell_to_field(pos12), &contact);
-    let (point1, point2) = pair.in_order(surface.on_shell, surface.on_field);
-    let (normal1, normal2) = pair.in_order(surface.shell_normal, surface.field_normal);
-    Some(ParryContact::new(
-        point1,
-        point2,
-        normal1,
-        normal2,
-        -contact.penetration,
-    ))
+    /// This dispatcher, and parry's own for parts of compounds that are no VPS shapes.
+    fn with_parry(self) -> impl QueryDispatcher {
+        self.chain(DefaultQueryDispatcher)
+    }
 }
 
 impl QueryDispatcher for VpsDispatcher {
@@ -51,7 +91,16 @@ impl QueryDispatcher for VpsDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        Ok(self.pair(g1, g2)?.touches(pos12).into())
+        let all = self.with_parry();
+        Ok(match self.task(g1, g2)? {
+            Task::Pair(pair) => pair.touches(&core_pose(pos12)).into(),
+            Task::PartsOfFirst(parts) => {
+                intersection_test_composite_shape_shape(&all, pos12, parts, g2)
+            }
+            Task::PartsOfSecond(parts) => {
+                intersection_test_shape_composite_shape(&all, pos12, g1, parts)
+            }
+        })
     }
 
     fn distance(
@@ -60,9 +109,16 @@ impl QueryDispatcher for VpsDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        let pair = self.pair(g1, g2)?;
-        let closest = closest(&pair, pos12, Real::INFINITY);
-        Ok(closest.map_or(Real::INFINITY, |c| c.dist.max(0.0)).into())
+        let all = self.with_parry();
+        Ok(match self.task(g1, g2)? {
+            Task::Pair(pair) => {
+                let closest = pair.deepest(&core_pose(pos12), f32::INFINITY);
+                closest.map_or(Real::INFINITY, |c| real((-c.penetration).max(0.0)))
+            }
+            .into(),
+            Task::PartsOfFirst(parts) => distance_composite_shape_shape(&all, pos12, parts, g2),
+            Task::PartsOfSecond(parts) => distance_shape_composite_shape(&all, pos12, g1, parts),
+        })
     }
 
     fn contact(
@@ -72,7 +128,18 @@ impl QueryDispatcher for VpsDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<ParryContact>, Unsupported> {
-        Ok(closest(&self.pair(g1, g2)?, pos12, prediction))
+        let all = self.with_parry();
+        Ok(match self.task(g1, g2)? {
+            Task::Pair(pair) => pair
+                .deepest(&core_pose(pos12), core_real(prediction))
+                .map(PairContact::to_parry),
+            Task::PartsOfFirst(parts) => {
+                contact_composite_shape_shape(&all, pos12, parts, g2, prediction)
+            }
+            Task::PartsOfSecond(parts) => {
+                contact_shape_composite_shape(&all, pos12, g1, parts, prediction)
+            }
+        })
     }
 
     fn closest_points(
@@ -82,10 +149,22 @@ impl QueryDispatcher for VpsDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        Ok(match closest(&self.pair(g1, g2)?, pos12, max_dist) {
-            Some(c) if c.dist <= 0.0 => ClosestPoints::Intersecting,
-            Some(c) => ClosestPoints::WithinMargin(c.point1, c.point2),
-            None => ClosestPoints::Disjoint,
+        let all = self.with_parry();
+        Ok(match self.task(g1, g2)? {
+            Task::Pair(pair) => match pair.deepest(&core_pose(pos12), core_real(max_dist)) {
+                Some(c) if c.penetration >= 0.0 => ClosestPoints::Intersecting,
+                Some(c) => {
+                    let [point1, point2] = c.points.map(vector);
+                    ClosestPoints::WithinMargin(point1, point2)
+                }
+                None => ClosestPoints::Disjoint,
+            },
+            Task::PartsOfFirst(parts) => {
+                closest_points_composite_shape_shape(&all, pos12, parts, g2, max_dist)
+            }
+            Task::PartsOfSecond(parts) => {
+                closest_points_shape_composite_shape(&all, pos12, g1, parts, max_dist)
+            }
         })
     }
 
@@ -97,9 +176,19 @@ impl QueryDispatcher for VpsDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let pair = self.pair(g1, g2)?;
-        let pose_at = |time| pos12.append_translation(local_vel12 * time);
-        Ok(cast(&pair, pose_at, local_vel12.length(), 0.0, options))
+        let all = self.with_parry();
+        Ok(match self.task(g1, g2)? {
+            Task::Pair(pair) => {
+                let pose_at = |time| pos12.append_translation(local_vel12 * time);
+                cast(&pair, pose_at, local_vel12.length(), 0.0, options)
+            }
+            Task::PartsOfFirst(parts) => {
+                cast_shapes_composite_shape_shape(&all, pos12, local_vel12, parts, g2, options)
+            }
+            Task::PartsOfSecond(parts) => {
+                cast_shapes_shape_composite_shape(&all, pos12, local_vel12, g1, parts, options)
+            }
+        })
     }
 
     fn cast_shapes_nonlinear(
@@ -112,83 +201,45 @@ impl QueryDispatcher for VpsDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let pair = self.pair(g1, g2)?;
-        let pose_at = |time| {
-            let [pos1, pos2] = [motion1, motion2].map(|m| m.position_at_time(time));
-            pos1.inv_mul(&pos2)
-        };
-        // No point of a shape is faster than its centre plus its spin times its reach.
-        let speed = |motion: &NonlinearRigidMotion, g: &dyn Shape| {
-            let sphere = g.compute_local_bounding_sphere();
-            let reach = sphere.center.distance(motion.local_center) + sphere.radius;
-            let spin = motion.angvel.length();
-            let spin_speed = if spin == 0.0 { 0.0 } else { spin * reach };
-            motion.linvel.length() + spin_speed
-        };
-        let closing_speed = speed(motion1, g1) + speed(motion2, g2);
-        let options = ShapeCastOptions {
-            max_time_of_impact: end_time,
-            stop_at_penetration,
-            ..ShapeCastOptions::default()
-        };
-        Ok(cast(&pair, pose_at, closing_speed, start_time, options))
+        let all = self.with_parry();
+        let stop = stop_at_penetration;
+        Ok(match self.task(g1, g2)? {
+            Task::Pair(pair) => {
+                let pose_at = |time| {
+                    let [pos1, pos2] = [motion1, motion2].map(|m| m.position_at_time(time));
+                    pos1.inv_mul(&pos2)
+                };
+                let closing_speed = top_speed(motion1, g1) + top_speed(motion2, g2);
+                let options = ShapeCastOptions {
+                    max_time_of_impact: end_time,
+                    stop_at_penetration,
+                    ..ShapeCastOptions::default()
+                };
+                cast(&pair, pose_at, closing_speed, start_time, options)
+            }
+            Task::PartsOfFirst(parts) => cast_shapes_nonlinear_composite_shape_shape(
+                &all, motion1, parts, motion2, g2, start_time, end_time, stop,
+            ),
+            Task::PartsOfSecond(parts) => cast_shapes_nonlinear_shape_composite_shape(
+                &all, motion1, g1, motion2, parts, start_time, end_time, stop,
+            ),
+        })
     }
 }
 
-/// Conservative advancement: as long as the shapes are apart, neither can meet the other sooner
-/// than their distance divided by their closing speed. From afar the lower bound of the distance
-/// is taken, since distances of a voxelmap may be too large there; close by, where that bound is
-/// mostly its own error, half of the distance.
-fn cast(
-    pair: &Pair<'_>,
-    pose_at: impl Fn(Real) -> Pose,
-    closing_speed: Real,
-    start_time: Real,
-    options: ShapeCastOptions,
-) -> Option<ShapeCastHit> {
-    let near = 4.0 * pair.resolution();
-    let tolerance = 1e-4 * pair.tree.bounds().extents().length();
-    let mut time = start_time;
-    let mut status = ShapeCastStatus::OutOfIterations;
-    let mut closest_now = closest(pair, &pose_at(time), Real::INFINITY)?;
-    if closest_now.dist <= options.target_distance {
-        if !options.stop_at_penetration {
-            return None;
-        }
-        status = ShapeCastStatus::PenetratingOrWithinTargetDist;
-    } else {
-        for _ in 0..CAST_STEPS {
-            let free = closest_now.dist - options.target_distance;
-            if free <= tolerance {
-                status = ShapeCastStatus::Converged;
-                break;
-            }
-            let sure = pair.clearance(&pose_at(time)) - options.target_distance;
-            time += sure.max(0.5 * free.min(near)) / closing_speed;
-            // Also when nothing moves.
-            let in_time = time <= options.max_time_of_impact;
-            if !in_time {
-                return None;
-            }
-            closest_now = closest(pair, &pose_at(time), Real::INFINITY)?;
-        }
-    }
-    Some(ShapeCastHit {
-        time_of_impact: time,
-        witness1: closest_now.point1,
-        witness2: closest_now.point2,
-        normal1: closest_now.normal1,
-        normal2: closest_now.normal2,
-        status,
-        subshape1: 0,
-        subshape2: 0,
-    })
+/// No point of a shape is faster than its centre plus its spin times its reach.
+fn top_speed(motion: &NonlinearRigidMotion, shape: &dyn Shape) -> Real {
+    let sphere = shape.compute_local_bounding_sphere();
+    let reach = sphere.center.distance(motion.local_center) + sphere.radius;
+    let spin = motion.angvel.length();
+    let spin_speed = if spin == 0.0 { 0.0 } else { spin * reach };
+    motion.linvel.length() + spin_speed
 }
 
 impl<M, C> PersistentQueryDispatcher<M, C> for VpsDispatcher
 where
-    M: Default + Clone,
-    C: Default + Copy,
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
 {
     fn contact_manifolds(
         &self,
@@ -199,8 +250,18 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let pair = self.pair(g1, g2)?;
-        update_manifolds(&pair, pos12, prediction, manifolds, workspace);
+        match self.task(g1, g2)? {
+            Task::Pair(pair) => {
+                let prediction = core_real(prediction);
+                let pose = core_pose(pos12);
+                update_manifolds(&pair, &pose, prediction, self.manifolds, manifolds);
+                Workspace::default().put(workspace);
+            }
+            Task::PartsOfFirst(_) | Task::PartsOfSecond(_) => {
+                let all = self.chain(DefaultQueryDispatcher);
+                update_parts(&all, pos12, [g1, g2], prediction, manifolds, workspace);
+            }
+        }
         Ok(())
     }
 

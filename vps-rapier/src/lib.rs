@@ -34,21 +34,37 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(all(feature = "f32", feature = "f64"))]
+compile_error!("choose one of the features f32 and f64, the second with default-features = false");
+#[cfg(not(any(feature = "f32", feature = "f64")))]
+compile_error!("choose one of the features f32 and f64");
+
+#[cfg(feature = "f32")]
+pub extern crate rapier3d;
+#[cfg(feature = "f64")]
+pub extern crate rapier3d_f64 as rapier3d;
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod contacts;
+mod cast;
+mod compound;
+mod contact;
 mod dispatcher;
+mod manifolds;
 mod pair;
+mod probe;
+mod real;
 mod shape;
 mod shape_field;
+mod way;
+mod workspace;
 
 use rapier3d::geometry::NarrowPhase;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 
-pub use dispatcher::VpsDispatcher;
-pub use pair::Sampling;
+pub use dispatcher::{Manifolds, Sampling, VpsDispatcher};
 pub use shape::{Role, VpsShape};
 pub use shape_field::ShapeField;
 

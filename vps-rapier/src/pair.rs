@@ -1,164 +1,155 @@
-use rapier3d::math::Pose;
-use rapier3d::parry::shape::{Shape, TypedShape};
-use vps_core::{
-    Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
-    PointSphereTree, Query, Trilinear, Vec3,
-};
+//! Two shapes of which at least one is a VPS shape.
 
-use crate::{ShapeField, VpsShape};
+use rapier3d::parry::shape::{PackedFeatureId, Shape};
+use vps_core::Pose3;
 
-/// How a voxelmap is sampled between the centres of its voxels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sampling {
-    /// Trilinear interpolation: penetration changes smoothly as a body rolls.
-    #[default]
-    Trilinear,
-    /// Eq. 4 of the paper.
-    Local,
-}
+use crate::contact::{PairContact, spread};
+use crate::probe::Probe;
+use crate::way::{MANIFOLD_SIZE, Way};
+use crate::{Manifolds, Role, Sampling, VpsShape};
 
-/// Evaluates an expression with the field of a pair as a variable of its own type, so that a query
-/// is compiled for each kind of field and decides nothing a point.
-macro_rules! with_field {
-    ($pair:expr, $field:ident => $body:expr) => {
-        match &$pair.field {
-            $crate::pair::Field::Trilinear($field) => $body,
-            $crate::pair::Field::Local($field) => $body,
-            $crate::pair::Field::Ball($field) => $body,
-            $crate::pair::Field::Cuboid($field) => $body,
-            $crate::pair::Field::HalfSpace($field) => $body,
-            $crate::pair::Field::Other($field) => $body,
-        }
-    };
-}
-/// Two shapes of which one is taken as the shell and the other as the field.
+/// All ways to look at a pair that are needed for it.
 pub(crate) struct Pair<'s> {
-    pub(crate) tree: &'s PointSphereTree<'static>,
-    pub(crate) field: Field<'s>,
-    /// Whether the first of the two shapes is the shell.
-    pub(crate) shell_is_first: bool,
+    /// One shell in the field of the other shape, or both.
+    ways: [Option<Way<'s>>; 2],
+    /// The points of a shape of parry in the voxelmap of the other.
+    probe: Option<Probe<'s>>,
 }
 
-/// The field of a pair.
-pub(crate) enum Field<'s> {
-    Trilinear(Trilinear<'s>),
-    Local(LocalPenetration<'s>),
-    Ball(Ball),
-    Cuboid(Cuboid),
-    HalfSpace(HalfSpace),
-    Other(ShapeField<'s>),
-}
+/// How many spacings of the points a shape must be thick to be met by points alone.
+const THICK: f32 = 2.0;
 
 impl<'s> Pair<'s> {
     /// `None` if neither shape is a VPS shape.
     pub(crate) fn of(g1: &'s dyn Shape, g2: &'s dyn Shape, sampling: Sampling) -> Option<Self> {
         let vps = |g: &'s dyn Shape| g.as_shape::<VpsShape>();
-        let (shell, field, shell_is_first) = match (vps(g1), vps(g2)) {
-            (None, None) => return None,
-            (Some(a), None) => (a, Field::of_shape(g2, a), true),
-            (None, Some(b)) => (b, Field::of_shape(g1, b), false),
-            (Some(a), Some(b)) => {
-                let points = |s: &VpsShape| s.asset().tree.point_count();
-                let first = match a.role().cmp(&b.role()) {
-                    std::cmp::Ordering::Equal => points(a) <= points(b),
-                    order => order.is_gt(),
-                };
-                let (shell, field) = if first { (a, b) } else { (b, a) };
-                (shell, Field::of_map(field, sampling), first)
-            }
+        match (vps(g1), vps(g2)) {
+            (None, None) => None,
+            (Some(a), None) => Some(Self {
+                ways: [Some(Way::in_shape(a, g2, true)), None],
+                probe: Some(Probe::new(g2, a, false)),
+            }),
+            (None, Some(b)) => Some(Self {
+                ways: [Some(Way::in_shape(b, g1, false)), None],
+                probe: Some(Probe::new(g1, b, true)),
+            }),
+            (Some(a), Some(b)) => Some(Self::of_vps_shapes(a, b, sampling)),
+        }
+    }
+
+    fn of_vps_shapes(a: &'s VpsShape, b: &'s VpsShape, sampling: Sampling) -> Self {
+        let points = |s: &VpsShape| s.asset().tree.point_count();
+        let first_is_shell = match (a.role(), b.role()) {
+            (Role::Pointshell, b) if b != Role::Pointshell => true,
+            (a, Role::Pointshell) if a != Role::Pointshell => false,
+            (Role::Voxelmap, b) if b != Role::Voxelmap => false,
+            (a, Role::Voxelmap) if a != Role::Voxelmap => true,
+            _ => points(a) <= points(b),
         };
-        Some(Self {
-            tree: &shell.asset().tree,
-            field,
-            shell_is_first,
-        })
+        let (shell, field) = if first_is_shell { (a, b) } else { (b, a) };
+        // Between the points of the shell there is room for a small shape; its own points find it.
+        let is_small = |shape: &VpsShape, spacing: f32| {
+            let extents = shape.asset().voxelmap.solid().extents();
+            extents.min_element() < THICK * spacing
+        };
+        let is_free = |s: &VpsShape| s.role() == Role::Mixed;
+        let both = [a, b].iter().any(|s| s.role() == Role::Both)
+            || is_free(a) && is_free(b) && is_small(field, shell.spacing());
+        let back = both.then(|| Way::in_map(field, shell, sampling, !first_is_shell));
+        Self {
+            ways: [
+                Some(Way::in_map(shell, field, sampling, first_is_shell)),
+                back,
+            ],
+            probe: None,
+        }
     }
 
-    /// The direction in which penetration grows, in the field frame.
-    pub(crate) fn inward_direction(&self, point: Vec3) -> Vec3 {
-        with_field!(self, field => field.inward_direction(point))
+    fn ways(&self) -> impl Iterator<Item = &Way<'s>> {
+        self.ways.iter().flatten()
     }
 
-    /// A few of the contacts up to `margin` metres away, `pos12` being the pose of the second shape
-    /// in the frame of the first; found faster if the deepest is known from the step before.
-    pub(crate) fn manifold<const N: usize>(
-        &self,
-        pos12: &Pose,
-        margin: f32,
-        hint: Option<u32>,
-    ) -> ContactManifold<N> {
-        let pose = self.shell_to_field(pos12);
-        with_field!(self, field => {
-            let query = Query::new(self.tree, field, pose).with_margin(margin);
-            hint.map_or(query, |point| query.with_hint(point)).manifold()
-        })
+    /// Whether the shapes touch, `pos12` being the pose of the second in the frame of the first.
+    pub(crate) fn touches(&self, pos12: &Pose3) -> bool {
+        self.ways().any(|way| way.touches(pos12))
+            || self.probe.as_ref().is_some_and(|p| p.touches(pos12))
     }
 
     /// The deepest contact up to `margin` metres away.
-    pub(crate) fn deepest(&self, pos12: &Pose, margin: f32) -> Option<Contact> {
-        let pose = self.shell_to_field(pos12);
-        with_field!(self, field => Query::new(self.tree, field, pose).with_margin(margin).deepest())
+    pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
+        let mut deepest: Option<PairContact> = None;
+        let mut offer = |contact: PairContact| {
+            if deepest.is_none_or(|d| contact.penetration > d.penetration) {
+                deepest = Some(contact);
+            }
+        };
+        self.ways()
+            .filter_map(|way| way.deepest(pos12, margin))
+            .for_each(&mut offer);
+        if let Some(probe) = &self.probe {
+            // What is further away than a point of the shell is not the deepest.
+            let least = deepest.map_or(margin, |d| -d.penetration);
+            let mut found = Vec::new();
+            probe.contacts(pos12, least, &mut found);
+            for contact in found {
+                if deepest.is_none_or(|d| contact.penetration > d.penetration) {
+                    deepest = Some(contact);
+                }
+            }
+        }
+        deepest
     }
 
-    pub(crate) fn touches(&self, pos12: &Pose) -> bool {
-        let pose = self.shell_to_field(pos12);
-        with_field!(self, field => Query::new(self.tree, field, pose).touches())
+    /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of the
+    /// deepest of the step before.
+    pub(crate) fn contacts(
+        &self,
+        pos12: &Pose3,
+        margin: f32,
+        manifolds: Manifolds,
+        before: Option<[PackedFeatureId; 2]>,
+    ) -> Vec<PairContact> {
+        let mut found = Vec::new();
+        for way in self.ways() {
+            match manifolds {
+                Manifolds::Spread => way.manifold(pos12, margin, before, &mut found),
+                Manifolds::Segments(level) => way.segments(pos12, margin, level, &mut found),
+            }
+        }
+        let by_shells = found.len();
+        if let Some(probe) = &self.probe {
+            probe.contacts(pos12, margin, &mut found);
+        }
+        let has_more = found.len() > by_shells || self.ways[1].is_some();
+        match manifolds {
+            Manifolds::Spread if has_more => spread::<MANIFOLD_SIZE>(&mut found, margin),
+            Manifolds::Segments(_) if found.len() > by_shells => {
+                let mut probed = found.split_off(by_shells);
+                spread::<MANIFOLD_SIZE>(&mut probed, margin);
+                found.extend(probed);
+            }
+            _ => {}
+        }
+        found
     }
 
-    /// How finely the field is sampled: the size of its voxels in metres, 0 if it is exact.
+    /// How finely the fields are sampled: the largest size of voxels in metres, 0 if exact.
     pub(crate) fn resolution(&self) -> f32 {
-        match &self.field {
-            Field::Trilinear(field) => field.voxel_size(),
-            Field::Local(field) => field.voxel_size(),
-            _ => 0.0,
-        }
+        let of_probe = self.probe.as_ref().map_or(0.0, Probe::resolution);
+        self.ways().map(Way::resolution).fold(of_probe, f32::max)
     }
 
-    /// A distance in metres that every point of the shell has at least from the solid; less than
-    /// the true one by the errors of the field, never more. Tests every point.
-    pub(crate) fn clearance(&self, pos12: &Pose) -> f32 {
-        let pose = self.shell_to_field(pos12);
-        let points = (0..self.tree.point_count()).map(|i| pose.transform_point(self.tree.point(i)));
-        with_field!(self, field => points
-            .map(|p| -field.penetration_bound(p, 0.0))
-            .fold(f32::INFINITY, f32::min))
+    /// The size of the smallest shell in metres.
+    pub(crate) fn size(&self) -> f32 {
+        self.ways().map(Way::size).fold(f32::INFINITY, f32::min)
     }
 
-    pub(crate) fn shell_to_field(&self, pos12: &Pose) -> Pose {
-        if self.shell_is_first {
-            pos12.inverse()
-        } else {
-            *pos12
-        }
-    }
-
-    /// Something of the shell and of the field as something of the first and of the second shape.
-    pub(crate) fn in_order<T>(&self, of_shell: T, of_field: T) -> (T, T) {
-        if self.shell_is_first {
-            (of_shell, of_field)
-        } else {
-            (of_field, of_shell)
-        }
-    }
-}
-
-impl<'s> Field<'s> {
-    fn of_map(shape: &'s VpsShape, sampling: Sampling) -> Self {
-        let map = &shape.asset().voxelmap;
-        match sampling {
-            Sampling::Trilinear => Self::Trilinear(map.trilinear()),
-            Sampling::Local => Self::Local(map.local()),
-        }
-    }
-
-    fn of_shape(shape: &'s dyn Shape, shell: &VpsShape) -> Self {
-        // An open surface holds a body that is through it by up to a tenth of its size.
-        let thickness = 0.1 * shell.asset().tree.bounds().extents().length();
-        match shape.as_typed_shape() {
-            TypedShape::Ball(ball) => Self::Ball(Ball::new(ball.radius)),
-            TypedShape::Cuboid(cuboid) => Self::Cuboid(Cuboid::new(cuboid.half_extents)),
-            TypedShape::HalfSpace(half_space) => Self::HalfSpace(HalfSpace::new(half_space.normal)),
-            _ => Self::Other(ShapeField::new(shape, thickness)),
-        }
+    /// A distance in metres that the shapes have at least, as far as points tell; never more than
+    /// that.
+    pub(crate) fn clearance(&self, pos12: &Pose3) -> f32 {
+        let by_shells = self.ways().map(|way| way.clearance(pos12));
+        let by_shells = by_shells.fold(f32::INFINITY, f32::min);
+        let by_probe = self.probe.as_ref().map(|p| p.clearance(pos12, by_shells));
+        by_probe.unwrap_or(by_shells)
     }
 }

@@ -1,23 +1,29 @@
 use std::sync::Arc;
 
-use rapier3d::math::{Real, Vector};
+use rapier3d::math::{Matrix, Real, Vector};
 use rapier3d::parry::bounding_volume::{Aabb, BoundingSphere};
 use rapier3d::parry::mass_properties::MassProperties;
 use rapier3d::parry::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use rapier3d::parry::shape::{FeatureId, Shape, ShapeType, SharedShape, TypedShape};
 use vps_core::{Asset, DistanceField, Vec3};
 
-/// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+use crate::real::{core_real, core_vector, real, vector};
+
+/// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell, and
+/// the field of the other's edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
-    /// Rather the field.
+    /// The field, if the other is not that rather.
     Voxelmap,
-    /// The shell if it has fewer points than the other (section 3.2). A body smaller than the
-    /// spacing of those points slips between them: give a ground [`Role::Voxelmap`].
+    /// The shell if it has fewer points than the other (section 3.2), and the field too if the other
+    /// is thin compared to the spacing of those points.
     #[default]
     Mixed,
-    /// Rather the shell.
+    /// The shell, if the other is not that rather.
     Pointshell,
+    /// Shell and field, always: what only one of two shells shows is not missed, for about twice
+    /// the time.
+    Both,
 }
 
 /// An [`Asset`] as a shape of parry: solid, in the frame of its mesh.
@@ -26,16 +32,29 @@ pub enum Role {
 #[derive(Clone)]
 pub struct VpsShape {
     asset: Arc<Asset<'static>>,
+    spacing: f32,
     role: Role,
 }
+
+/// How many times its spacing squared a point of a shell covers, about.
+const COVERED: f32 = 1.5;
 
 impl VpsShape {
     /// A shape of an asset, shell or field as fits the pair.
     pub fn new(asset: Arc<Asset<'static>>) -> Self {
+        let areas = asset.tree.areas();
+        let area: f32 = areas.iter().sum();
+        let spacing = (area / (COVERED * areas.len() as f32)).sqrt();
         Self {
             asset,
+            spacing,
             role: Role::Mixed,
         }
+    }
+
+    /// How far the points of the shell are apart in metres, about.
+    pub fn spacing(&self) -> f32 {
+        self.spacing
     }
 
     /// The same shape with a preference for what it is in a pair.
@@ -78,12 +97,13 @@ impl From<VpsShape> for SharedShape {
 impl Shape for VpsShape {
     fn compute_local_aabb(&self) -> Aabb {
         let solid = self.asset.voxelmap.solid();
-        Aabb::new(solid.min, solid.max)
+        Aabb::new(vector(solid.min), vector(solid.max))
     }
 
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {
         let solid = self.asset.voxelmap.solid();
-        BoundingSphere::new(solid.center(), 0.5 * solid.extents().length())
+        let radius = 0.5 * solid.extents().length();
+        BoundingSphere::new(vector(solid.center()), real(radius))
     }
 
     fn clone_dyn(&self) -> Box<dyn Shape> {
@@ -97,12 +117,10 @@ impl Shape for VpsShape {
 
     fn mass_properties(&self, density: Real) -> MassProperties {
         let mass = self.asset.mass;
-        let kilograms = density * mass.volume;
-        MassProperties::with_inertia_matrix(
-            mass.center(),
-            kilograms,
-            mass.inertia_tensor(kilograms),
-        )
+        let kilograms = density * real(mass.volume);
+        let inertia = mass.inertia_tensor(core_real(kilograms));
+        let inertia = Matrix::from_cols_array(&inertia.to_cols_array().map(real));
+        MassProperties::with_inertia_matrix(vector(mass.center()), kilograms, inertia)
     }
 
     fn shape_type(&self) -> ShapeType {
@@ -114,21 +132,21 @@ impl Shape for VpsShape {
     }
 
     fn ccd_thickness(&self) -> Real {
-        0.5 * self.asset.voxelmap.solid().extents().min_element()
+        real(0.5 * self.asset.voxelmap.solid().extents().min_element())
     }
 
     fn ccd_angular_thickness(&self) -> Real {
-        std::f32::consts::FRAC_PI_4
+        real(std::f32::consts::FRAC_PI_4)
     }
 }
 
 impl PointQuery for VpsShape {
     fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
-        let (on_surface, is_inside) = self.project(point);
+        let (on_surface, is_inside) = self.project(core_vector(point));
         let nearest = if solid && is_inside {
             point
         } else {
-            on_surface
+            vector(on_surface)
         };
         PointProjection::new(is_inside, nearest)
     }
@@ -149,9 +167,10 @@ impl RayCast for VpsShape {
     ) -> Option<RayIntersection> {
         let field = self.asset.voxelmap.trilinear();
         let speed = ray.dir.length();
-        let starts_inside = field.signed_distance(ray.origin) < 0.0;
+        let starts_inside = field.signed_distance(core_vector(ray.origin)) < 0.0;
         let hit = |time| {
-            let normal = -field.inward_direction(ray.point_at(time));
+            let inward = field.inward_direction(core_vector(ray.point_at(time)));
+            let normal = vector(-inward);
             Some(RayIntersection::new(time, normal, FeatureId::Unknown))
         };
         if starts_inside && solid {
@@ -164,14 +183,14 @@ impl RayCast for VpsShape {
         let close = 0.05 * self.asset.voxelmap.grid().voxel_size();
         let (solid_box, mut time) = (self.asset.voxelmap.solid(), 0.0);
         while time <= max_time_of_impact {
-            let point = ray.point_at(time);
+            let point = core_vector(ray.point_at(time));
             // Outside of the box its distance is safe, and further than the field's may be.
             let outside = solid_box.distance_outside(point);
             let free = side * field.signed_distance(point);
             if free <= close && outside <= close {
                 return hit(time);
             }
-            let next = time + (0.9 * free).max(outside).max(close) / speed;
+            let next = time + real((0.9 * free).max(outside).max(close)) / speed;
             if next <= time {
                 // From this far away, 32 bits cannot tell two points of the ray apart.
                 return hit(time);
@@ -179,7 +198,7 @@ impl RayCast for VpsShape {
             time = next;
             let passed = solid_box.center() - point;
             if outside > 0.0
-                && passed.dot(ray.dir) < 0.0
+                && passed.dot(core_vector(ray.dir)) < 0.0
                 && passed.length() > solid_box.extents().length()
             {
                 return None;

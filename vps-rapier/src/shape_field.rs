@@ -3,6 +3,8 @@ use rapier3d::parry::query::{PointProjection, PointQuery, PointQueryWithLocation
 use rapier3d::parry::shape::{Shape, TriMeshFlags, TypedShape};
 use vps_core::{Aabb, DistanceField, Vec3};
 
+use crate::real::{core_pose, core_real, core_vector, vector};
+
 /// Any shape of parry as a distance field, by projecting points on its surface.
 ///
 /// As exact, and as fast, as the shape's own projection.
@@ -28,9 +30,11 @@ impl<'s> ShapeField<'s> {
     /// The closest point of the surface, and the penetration. For a compound those of the part
     /// that is deepest.
     fn closest(&self, point: Vec3) -> (Vec3, f32) {
+        let at = vector(point);
         let (projection, behind) = match self.shape.as_typed_shape() {
             TypedShape::Compound(compound) => {
                 let parts = compound.shapes().iter().map(|(pose, part)| {
+                    let pose = core_pose(pose);
                     let part = Self::new(&**part, self.thickness);
                     let (on_surface, depth) = part.closest(pose.inverse_transform_point(point));
                     (pose.transform_point(on_surface), depth)
@@ -41,24 +45,25 @@ impl<'s> ShapeField<'s> {
             }
             TypedShape::TriMesh(mesh) if !mesh.flags().contains(TriMeshFlags::ORIENTED) => {
                 let (projection, (triangle, _)) =
-                    mesh.project_local_point_and_get_location(point, false);
+                    mesh.project_local_point_and_get_location(at, false);
                 let normal = mesh.triangle(triangle).scaled_normal();
-                (projection, (point - projection.point).dot(normal) < 0.0)
+                (projection, (at - projection.point).dot(normal) < 0.0)
             }
             TypedShape::HeightField(field) => {
-                let projection = field.project_local_point(point, false);
-                (projection, point.y < projection.point.y)
+                let projection = field.project_local_point(at, false);
+                (projection, at.y < projection.point.y)
             }
             TypedShape::Triangle(triangle) => {
-                let projection = triangle.project_local_point(point, false);
-                let behind = (point - projection.point).dot(triangle.scaled_normal()) < 0.0;
+                let projection = triangle.project_local_point(at, false);
+                let behind = (at - projection.point).dot(triangle.scaled_normal()) < 0.0;
                 (projection, behind)
             }
-            _ => return solid(point, &self.shape.project_local_point(point, false)),
+            _ => return solid(at, &self.shape.project_local_point(at, false)),
         };
-        let distance = projection.point.distance(point);
+        let on_surface = core_vector(projection.point);
+        let distance = on_surface.distance(point);
         let inside = behind && distance <= self.thickness;
-        (projection.point, if inside { distance } else { -distance })
+        (on_surface, if inside { distance } else { -distance })
     }
 
     /// Whether the penetration jumps from `thickness` to nothing on the far side.
@@ -76,13 +81,13 @@ impl<'s> ShapeField<'s> {
 }
 
 fn solid(point: Vector, projection: &PointProjection) -> (Vec3, f32) {
-    let distance = projection.point.distance(point);
+    let distance = core_real(projection.point.distance(point));
     let depth = if projection.is_inside {
         distance
     } else {
         -distance
     };
-    (projection.point, depth)
+    (core_vector(projection.point), depth)
 }
 
 impl DistanceField for ShapeField<'_> {
@@ -115,14 +120,14 @@ impl DistanceField for ShapeField<'_> {
         let aabb = self.shape.compute_local_aabb();
         let skin = if self.is_open() { self.thickness } else { 0.0 };
         Aabb {
-            min: aabb.mins - skin,
-            max: aabb.maxs + skin,
+            min: core_vector(aabb.mins) - skin,
+            max: core_vector(aabb.maxs) + skin,
         }
     }
 
     /// What parry's iterative projections may be off: a part in 10 000 of the shape's size.
     fn error_bound(&self) -> f32 {
-        let radius = self.shape.compute_local_bounding_sphere().radius;
+        let radius = core_real(self.shape.compute_local_bounding_sphere().radius);
         if radius.is_finite() {
             1e-4 * radius
         } else {

@@ -176,7 +176,11 @@ fn queries_agree_with_parry_in_both_orders() {
         &Cylinder::new(0.2, 0.15),
     ];
     for sampling in [Sampling::Trilinear, Sampling::Local] {
-        let dispatcher = VpsDispatcher { sampling }.chain(DefaultQueryDispatcher);
+        let dispatcher = VpsDispatcher {
+            sampling,
+            ..VpsDispatcher::default()
+        }
+        .chain(DefaultQueryDispatcher);
         for (i, other) in others.into_iter().enumerate() {
             for step in 0..12 {
                 // From well apart to deep inside, along the face normal x.

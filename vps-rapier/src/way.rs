@@ -1,0 +1,212 @@
+//! One of the two ways to look at a pair: a shell in a field.
+
+use rapier3d::parry::shape::{FeatureId, PackedFeatureId, Shape, TypedShape};
+use vps_core::{
+    Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
+    PointSphereTree, Pose3, Query, Trilinear, Vec3,
+};
+
+use crate::contact::PairContact;
+use crate::real::{core_real, core_vector};
+use crate::{Sampling, ShapeField, VpsShape};
+
+/// Most contacts of a manifold: what rapier's solver takes of one (and Bullet's, section 3.2).
+pub(crate) const MANIFOLD_SIZE: usize = 4;
+
+/// A pointshell in a field.
+pub(crate) struct Way<'s> {
+    tree: &'s PointSphereTree<'static>,
+    field: Field<'s>,
+    /// Whether the first of the two shapes is the shell.
+    shell_is_first: bool,
+}
+
+enum Field<'s> {
+    Trilinear(Trilinear<'s>),
+    Local(LocalPenetration<'s>),
+    Ball(Ball),
+    Cuboid(Cuboid),
+    HalfSpace(HalfSpace),
+    Other(ShapeField<'s>),
+}
+
+/// Evaluates an expression with the field of a way as a variable of its own type, so that a query
+/// is compiled for each kind of field and decides nothing a point.
+macro_rules! with_field {
+    ($way:expr, $field:ident => $body:expr) => {
+        match &$way.field {
+            Field::Trilinear($field) => $body,
+            Field::Local($field) => $body,
+            Field::Ball($field) => $body,
+            Field::Cuboid($field) => $body,
+            Field::HalfSpace($field) => $body,
+            Field::Other($field) => $body,
+        }
+    };
+}
+
+impl<'s> Way<'s> {
+    /// The shell of one VPS shape in the voxelmap of another.
+    pub(crate) fn in_map(
+        shell: &'s VpsShape,
+        field: &'s VpsShape,
+        sampling: Sampling,
+        shell_is_first: bool,
+    ) -> Self {
+        let map = &field.asset().voxelmap;
+        Self {
+            tree: &shell.asset().tree,
+            field: match sampling {
+                Sampling::Trilinear => Field::Trilinear(map.trilinear()),
+                Sampling::Local => Field::Local(map.local()),
+            },
+            shell_is_first,
+        }
+    }
+
+    /// The shell of a VPS shape in a shape of parry.
+    pub(crate) fn in_shape(
+        shell: &'s VpsShape,
+        shape: &'s dyn Shape,
+        shell_is_first: bool,
+    ) -> Self {
+        // An open surface holds a body that is through it by up to a tenth of its size.
+        let thickness = 0.1 * shell.asset().tree.bounds().extents().length();
+        let field = match shape.as_typed_shape() {
+            TypedShape::Ball(ball) => Field::Ball(Ball::new(core_real(ball.radius))),
+            TypedShape::Cuboid(cuboid) => {
+                Field::Cuboid(Cuboid::new(core_vector(cuboid.half_extents)))
+            }
+            TypedShape::HalfSpace(half_space) => {
+                Field::HalfSpace(HalfSpace::new(core_vector(half_space.normal)))
+            }
+            _ => Field::Other(ShapeField::new(shape, thickness)),
+        };
+        Self {
+            tree: &shell.asset().tree,
+            field,
+            shell_is_first,
+        }
+    }
+
+    /// Whether the shell touches the solid, `pos12` being the pose of the second shape in the frame
+    /// of the first.
+    pub(crate) fn touches(&self, pos12: &Pose3) -> bool {
+        let pose = self.shell_to_field(pos12);
+        with_field!(self, field => Query::new(self.tree, field, pose).touches())
+    }
+
+    /// The deepest contact up to `margin` metres away.
+    pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
+        let pose = self.shell_to_field(pos12);
+        let query_deepest = |contact| self.on_surfaces(&pose, &contact);
+        with_field!(self, field => {
+            Query::new(self.tree, field, pose).with_margin(margin).deepest().map(query_deepest)
+        })
+    }
+
+    /// The deepest contact first, then those that spread over the largest area; found faster if one
+    /// of those of the step before was the deepest.
+    pub(crate) fn manifold(
+        &self,
+        pos12: &Pose3,
+        margin: f32,
+        before: Option<[PackedFeatureId; 2]>,
+        found: &mut Vec<PairContact>,
+    ) {
+        let pose = self.shell_to_field(pos12);
+        let hint = before.and_then(|ids| {
+            let of_shell = if self.shell_is_first { ids[0] } else { ids[1] };
+            match of_shell.unpack() {
+                FeatureId::Vertex(point) => Some(point),
+                _ => None,
+            }
+        });
+        let manifold: ContactManifold<MANIFOLD_SIZE> = with_field!(self, field => {
+            let query = Query::new(self.tree, field, pose).with_margin(margin);
+            hint.map_or(query, |point| query.with_hint(point)).manifold()
+        });
+        let contacts = manifold.contacts().iter();
+        found.extend(contacts.map(|contact| self.on_surfaces(&pose, contact)));
+    }
+
+    /// The deepest contact of each segment of a level, told apart by segments and not by points.
+    pub(crate) fn segments(
+        &self,
+        pos12: &Pose3,
+        margin: f32,
+        level: u32,
+        found: &mut Vec<PairContact>,
+    ) {
+        let pose = self.shell_to_field(pos12);
+        let level = level.clamp(1, self.tree.level_count());
+        let visit = |segment, contact| {
+            let mut contact = self.on_surfaces(&pose, &contact);
+            contact.ids = self.in_order(PackedFeatureId::face(segment), PackedFeatureId::UNKNOWN);
+            found.push(contact);
+        };
+        with_field!(self, field => {
+            Query::new(self.tree, field, pose).with_margin(margin).for_each_segment(level, visit);
+        });
+    }
+
+    /// How finely the field is sampled: the size of its voxels in metres, 0 if it is exact.
+    pub(crate) fn resolution(&self) -> f32 {
+        match &self.field {
+            Field::Trilinear(field) => field.voxel_size(),
+            Field::Local(field) => field.voxel_size(),
+            _ => 0.0,
+        }
+    }
+
+    /// The size of the shell in metres.
+    pub(crate) fn size(&self) -> f32 {
+        self.tree.bounds().extents().length()
+    }
+
+    /// A distance in metres that every point of the shell has at least from the solid; less than
+    /// the true one by the errors of the field, never more. Tests every point.
+    pub(crate) fn clearance(&self, pos12: &Pose3) -> f32 {
+        let pose = self.shell_to_field(pos12);
+        let points = (0..self.tree.point_count()).map(|i| pose.transform_point(self.tree.point(i)));
+        with_field!(self, field => points
+            .map(|p| -field.penetration_bound(p, 0.0))
+            .fold(f32::INFINITY, f32::min))
+    }
+
+    fn shell_to_field(&self, pos12: &Pose3) -> Pose3 {
+        if self.shell_is_first {
+            pos12.inverse()
+        } else {
+            *pos12
+        }
+    }
+
+    /// Something of the shell and of the field as something of the first and of the second shape.
+    fn in_order<T>(&self, of_shell: T, of_field: T) -> [T; 2] {
+        if self.shell_is_first {
+            [of_shell, of_field]
+        } else {
+            [of_field, of_shell]
+        }
+    }
+
+    /// Takes the normal of the field, which does not depend on how the shell was sampled; where
+    /// the field has none, that of the shell.
+    fn on_surfaces(&self, shell_to_field: &Pose3, contact: &Contact) -> PairContact {
+        let in_field = shell_to_field.transform_point(contact.position);
+        let mut inward: Vec3 = with_field!(self, field => field.inward_direction(in_field));
+        if inward == Vec3::ZERO {
+            inward = -(shell_to_field.rotation * contact.normal);
+        }
+        let on_field = in_field - inward * contact.penetration;
+        let of_shell = shell_to_field.rotation.inverse() * inward;
+        let point = PackedFeatureId::vertex(contact.point);
+        PairContact {
+            points: self.in_order(contact.position, on_field),
+            normals: self.in_order(of_shell, -inward),
+            ids: self.in_order(point, PackedFeatureId::UNKNOWN),
+            penetration: contact.penetration,
+        }
+    }
+}
