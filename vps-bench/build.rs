@@ -1,6 +1,5 @@
 //! Tells the program what it was built with, for the environment of its records.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::process::Command;
 
@@ -14,7 +13,6 @@ fn main() {
         let value = std::env::var(variable).unwrap_or_default();
         println!("cargo::rustc-env=VPS_{variable}={value}");
     }
-    println!("cargo::rustc-env=VPS_BUILDER={:016x}", builder_hash());
     let lock = Path::new("../Cargo.lock");
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={}", lock.display());
@@ -28,20 +26,4 @@ fn main() {
         let version = version.unwrap_or("unknown");
         println!("cargo::rustc-env=VPS_{}={version}", name.to_uppercase());
     }
-}
-
-/// A hash of all that decides what an asset looks like, so that none of an older builder is used.
-fn builder_hash() -> u64 {
-    let mut hasher = DefaultHasher::new();
-    for folder in ["../vps-core/src", "../vps-build/src"] {
-        println!("cargo::rerun-if-changed={folder}");
-        let mut files: Vec<_> = std::fs::read_dir(folder)
-            .map(|entries| entries.flatten().map(|entry| entry.path()).collect())
-            .unwrap_or_default();
-        files.sort();
-        for file in files {
-            std::fs::read(file).unwrap_or_default().hash(&mut hasher);
-        }
-    }
-    hasher.finish()
 }

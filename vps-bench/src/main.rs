@@ -2,7 +2,6 @@
 
 #![forbid(unsafe_code)]
 
-mod assets;
 mod config;
 mod drop;
 mod environment;
@@ -20,8 +19,8 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use indicatif::ProgressBar;
+use vps_build::AssetCache;
 
-use crate::assets::AssetCache;
 use crate::config::Experiment;
 use crate::models::Models;
 use crate::run::Records;

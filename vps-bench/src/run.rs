@@ -5,7 +5,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vps_build::{BuildOptions, Mesh, PointCount, Resolution, mass_properties, read_mesh};
+use vps_build::{
+    AssetCache, BuildOptions, CachedAsset, Mesh, PointCount, Resolution, mass_properties, read_mesh,
+};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
     AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
@@ -13,7 +15,6 @@ use vps_compare::{
 };
 use vps_rapier::Sampling;
 
-use crate::assets::{AssetCache, Kept};
 use crate::config::{self, Experiment, Method, SamplingName};
 use crate::drop::Drop;
 use crate::environment::Environment;
@@ -111,9 +112,11 @@ fn prepare(
         body: mesh,
         ground_extents: experiment.ground.extents_m,
     };
-    let used: RefCell<Vec<Kept>> = RefCell::default();
+    let used: RefCell<Vec<CachedAsset>> = RefCell::default();
     let get = |mesh: &Mesh, options: &BuildOptions| {
-        let kept = assets.get(mesh, options).map_err(|e| e.to_string())?;
+        let kept = assets
+            .get(mesh, options, &|_| ())
+            .map_err(|e| e.to_string())?;
         let asset = kept.asset.clone();
         used.borrow_mut().push(kept);
         Ok(asset)

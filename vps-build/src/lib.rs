@@ -35,6 +35,7 @@ pub mod ball;
 mod bends;
 mod build;
 mod bvh;
+mod cache;
 mod cluster;
 mod distance;
 mod edges;
@@ -61,6 +62,7 @@ pub use build::{
     BuildError, BuildOptions, Built, ClosestPoints, Clustering, DENSE_VOXELS, Density, Encoding,
     PointCount, Resolution, Stage, build,
 };
+pub use cache::{AssetCache, BUILDER, CacheError, CachedAsset};
 pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use health::Health;
 pub use mass::mass_properties;

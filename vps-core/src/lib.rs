@@ -82,6 +82,8 @@ mod lanes;
 mod manifold;
 mod query;
 mod sampling;
+#[cfg(feature = "alloc")]
+mod scale;
 mod search;
 mod segments;
 mod shapes;
@@ -108,6 +110,8 @@ pub use lanes::{Discs, LANES, Points};
 pub use manifold::ContactManifold;
 pub use query::{Contact, Query};
 pub use sampling::{Linear, LocalPenetration, Trilinear};
+#[cfg(feature = "alloc")]
+pub use scale::ScaleError;
 pub use shapes::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
 pub use storage::Storage;
 pub use store::{Store, Values};

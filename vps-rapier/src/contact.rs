@@ -62,3 +62,32 @@ pub(crate) fn spread<const N: usize>(contacts: &mut Vec<PairContact>, margin: f3
     let picked = picked.contacts().iter();
     *contacts = picked.map(|c| contacts[c.point as usize]).collect();
 }
+
+/// Whether contacts of the step before are as good as the ones an engine would get now: as many, as
+/// deep but for `tolerance`, and almost as wide apart. Then they stay, so that a body at rest is not
+/// handed from one choice among many equal ones to the next.
+pub(crate) fn is_as_good(before: &[PairContact], now: &[PairContact], tolerance: f32) -> bool {
+    let deepest = |contacts: &[PairContact]| {
+        let depths = contacts.iter().map(|c| c.penetration);
+        depths.fold(f32::NEG_INFINITY, f32::max)
+    };
+    let shallowest = |contacts: &[PairContact]| {
+        let depths = contacts.iter().map(|c| c.penetration);
+        depths.fold(f32::INFINITY, f32::min)
+    };
+    before.len() == now.len()
+        && deepest(before) >= deepest(now) - tolerance
+        && shallowest(before) >= shallowest(now) - tolerance
+        && spread_of(before) >= ALMOST * spread_of(now)
+}
+
+/// How much of the spread of the best contacts is enough.
+const ALMOST: f32 = 0.8;
+
+/// The sum of all squared distances between two contacts, in m².
+fn spread_of(contacts: &[PairContact]) -> f32 {
+    let pairs = (0..contacts.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs
+        .map(|(i, j)| contacts[i].points[0].distance_squared(contacts[j].points[0]))
+        .sum()
+}

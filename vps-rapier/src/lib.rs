@@ -48,6 +48,8 @@ pub extern crate rapier3d_f64 as rapier3d;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+#[cfg(feature = "build")]
+mod builder;
 mod cast;
 mod compound;
 mod contact;
@@ -56,6 +58,8 @@ mod manifolds;
 mod pair;
 mod probe;
 mod real;
+#[cfg(feature = "serde")]
+mod saved;
 mod shape;
 mod shape_field;
 mod way;
@@ -64,7 +68,11 @@ mod workspace;
 use rapier3d::geometry::NarrowPhase;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 
+#[cfg(feature = "build")]
+pub use builder::{ShapeError, ShapeInBackground, VpsShapeBuilder};
 pub use dispatcher::{Manifolds, Sampling, VpsDispatcher};
+#[cfg(feature = "serde")]
+pub use saved::{SaveError, SavedShapes};
 pub use shape::{Role, VpsShape};
 pub use shape_field::ShapeField;
 

@@ -21,9 +21,9 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     manifolds: &mut Vec<ContactManifold<M, C>>,
 ) {
     let mut old = std::mem::take(manifolds);
-    let before = old.first().and_then(|m| m.points.first());
-    let before = before.map(|c| [c.fid1, c.fid2]);
-    for contact in pair.contacts(pos12, prediction, kind, before) {
+    let before = old.iter().flat_map(|m| &m.points);
+    let before: Vec<_> = before.map(|c| [c.fid1, c.fid2]).collect();
+    for contact in pair.contacts(pos12, prediction, kind, &before) {
         let tracked = tracked(&contact, &old);
         let normal = contact.normals[0];
         let same = match kind {

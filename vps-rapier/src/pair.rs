@@ -3,7 +3,7 @@
 use rapier3d::parry::shape::{PackedFeatureId, Shape};
 use vps_core::Pose3;
 
-use crate::contact::{PairContact, spread};
+use crate::contact::{PairContact, is_as_good, spread};
 use crate::probe::Probe;
 use crate::way::{MANIFOLD_SIZE, Way};
 use crate::{Manifolds, Role, Sampling, VpsShape};
@@ -18,6 +18,9 @@ pub(crate) struct Pair<'s> {
 
 /// How many spacings of the points a shape must be thick to be met by points alone.
 const THICK: f32 = 2.0;
+
+/// By how much of the size of a shell contacts may be less deep than the best there are, and stay.
+const STILL: f32 = 1e-4;
 
 impl<'s> Pair<'s> {
     /// `None` if neither shape is a VPS shape.
@@ -100,14 +103,14 @@ impl<'s> Pair<'s> {
         deepest
     }
 
-    /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of the
-    /// deepest of the step before.
+    /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of those of
+    /// the step before.
     pub(crate) fn contacts(
         &self,
         pos12: &Pose3,
         margin: f32,
         manifolds: Manifolds,
-        before: Option<[PackedFeatureId; 2]>,
+        before: &[[PackedFeatureId; 2]],
     ) -> Vec<PairContact> {
         let mut found = Vec::new();
         for way in self.ways() {
@@ -122,7 +125,17 @@ impl<'s> Pair<'s> {
         }
         let has_more = found.len() > by_shells || self.ways[1].is_some();
         match manifolds {
-            Manifolds::Spread if has_more => spread::<MANIFOLD_SIZE>(&mut found, margin),
+            Manifolds::Spread => {
+                let kept = self.again(pos12, before, &found[by_shells..]);
+                if has_more {
+                    spread::<MANIFOLD_SIZE>(&mut found, margin);
+                }
+                if let Some(kept) = kept
+                    && is_as_good(&kept, &found, STILL * self.size())
+                {
+                    return kept;
+                }
+            }
             Manifolds::Segments(_) if found.len() > by_shells => {
                 let mut probed = found.split_off(by_shells);
                 spread::<MANIFOLD_SIZE>(&mut probed, margin);
@@ -131,6 +144,20 @@ impl<'s> Pair<'s> {
             _ => {}
         }
         found
+    }
+
+    /// What the contacts of the step before are now, if all can be told.
+    fn again(
+        &self,
+        pos12: &Pose3,
+        before: &[[PackedFeatureId; 2]],
+        probed: &[PairContact],
+    ) -> Option<Vec<PairContact>> {
+        let one = |&ids: &[PackedFeatureId; 2]| {
+            let by_shell = self.ways().find_map(|way| way.again(pos12, ids));
+            by_shell.or_else(|| probed.iter().find(|c| c.ids == ids).copied())
+        };
+        before.iter().map(one).collect()
     }
 
     /// How finely the fields are sampled: the largest size of voxels in metres, 0 if exact.

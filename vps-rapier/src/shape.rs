@@ -1,3 +1,4 @@
+use std::path::Path;
 use std::sync::Arc;
 
 use rapier3d::math::{Matrix, Real, Vector};
@@ -12,6 +13,7 @@ use crate::real::{core_real, core_vector, real, vector};
 /// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell, and
 /// the field of the other's edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Role {
     /// The field, if the other is not that rather.
     Voxelmap,
@@ -34,6 +36,7 @@ pub struct VpsShape {
     asset: Arc<Asset<'static>>,
     spacing: f32,
     role: Role,
+    file: Option<Arc<Path>>,
 }
 
 /// How many times its spacing squared a point of a shell covers, about.
@@ -49,12 +52,27 @@ impl VpsShape {
             asset,
             spacing,
             role: Role::Mixed,
+            file: None,
         }
     }
 
     /// How far the points of the shell are apart in metres, about.
     pub fn spacing(&self) -> f32 {
         self.spacing
+    }
+
+    /// The same shape, its asset being the one in a file.
+    #[cfg(feature = "build")]
+    pub(crate) fn in_file(self, file: &Path) -> Self {
+        Self {
+            file: Some(file.into()),
+            ..self
+        }
+    }
+
+    /// The file its asset is in, if it is known.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
     }
 
     /// The same shape with a preference for what it is in a pair.
@@ -110,9 +128,13 @@ impl Shape for VpsShape {
         Box::new(self.clone())
     }
 
-    /// Assets are not scaled: build one of a scaled mesh.
-    fn scale_dyn(&self, _scale: Vector, _subdivisions: u32) -> Option<Box<dyn Shape>> {
-        None
+    /// By the same positive factor along all axes, which copies the asset; `None` for other scales:
+    /// a stretched mesh has other distances, build an asset of it.
+    fn scale_dyn(&self, scale: Vector, _subdivisions: u32) -> Option<Box<dyn Shape>> {
+        let scale = core_vector(scale);
+        let is_uniform = scale.max_element() - scale.min_element() <= 1e-6 * scale.x.abs();
+        let asset = self.asset.scaled(scale.x).ok().filter(|_| is_uniform)?;
+        Some(Box::new(Self::new(Arc::new(asset)).with_role(self.role)))
     }
 
     fn mass_properties(&self, density: Real) -> MassProperties {

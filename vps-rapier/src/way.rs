@@ -105,17 +105,17 @@ impl<'s> Way<'s> {
         })
     }
 
-    /// The deepest contact first, then those that spread over the largest area; found faster if one
-    /// of those of the step before was the deepest.
+    /// The deepest contact first, then those that spread over the largest area; found faster if the
+    /// first of the step before is deep still.
     pub(crate) fn manifold(
         &self,
         pos12: &Pose3,
         margin: f32,
-        before: Option<[PackedFeatureId; 2]>,
+        before: &[[PackedFeatureId; 2]],
         found: &mut Vec<PairContact>,
     ) {
         let pose = self.shell_to_field(pos12);
-        let hint = before.and_then(|ids| {
+        let hint = before.first().and_then(|ids| {
             let of_shell = if self.shell_is_first { ids[0] } else { ids[1] };
             match of_shell.unpack() {
                 FeatureId::Vertex(point) => Some(point),
@@ -128,6 +128,28 @@ impl<'s> Way<'s> {
         });
         let contacts = manifold.contacts().iter();
         found.extend(contacts.map(|contact| self.on_surfaces(&pose, contact)));
+    }
+
+    /// What a contact found before is now, if this shell's point was it.
+    pub(crate) fn again(&self, pos12: &Pose3, ids: [PackedFeatureId; 2]) -> Option<PairContact> {
+        let of_shell = if self.shell_is_first { ids[0] } else { ids[1] };
+        let FeatureId::Vertex(point) = of_shell.unpack() else {
+            return None;
+        };
+        let index = point as usize;
+        if index >= self.tree.point_count() {
+            return None;
+        }
+        let pose = self.shell_to_field(pos12);
+        let (position, normal) = (self.tree.point(index), self.tree.normal(index));
+        let (at, turned) = (pose.transform_point(position), pose.rotation * normal);
+        let contact = Contact {
+            point,
+            position,
+            normal,
+            penetration: with_field!(self, field => field.penetration(at, turned)),
+        };
+        Some(self.on_surfaces(&pose, &contact))
     }
 
     /// The deepest contact of each segment of a level, told apart by segments and not by points.

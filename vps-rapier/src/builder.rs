@@ -1,0 +1,155 @@
+use std::path::Path;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use rapier3d::math::Vector;
+use vps_build::{
+    AssetCache, BuildError, BuildOptions, CacheError, FileError, Mesh, MeshError, ReadError, build,
+    read_asset, read_mesh,
+};
+
+use crate::{Role, VpsShape};
+
+/// Makes a [`VpsShape`] of a mesh.
+///
+/// ```
+/// # use vps_rapier::rapier3d::prelude::*;
+/// use vps_rapier::VpsShapeBuilder;
+///
+/// let (vertices, triangles) = Cuboid::new(Vector::new(0.2, 0.1, 0.1)).to_trimesh();
+/// let shape = VpsShapeBuilder::from_triangles(&vertices, &triangles)?.build()?;
+/// let collider = ColliderBuilder::new(shape.into()).restitution(0.3);
+/// # Ok::<(), vps_rapier::ShapeError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct VpsShapeBuilder {
+    mesh: Mesh,
+    options: BuildOptions,
+    cache: Option<AssetCache>,
+    role: Role,
+}
+
+/// Why there is no shape.
+#[derive(Debug, thiserror::Error)]
+pub enum ShapeError {
+    /// The triangles are no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The file of a mesh cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The mesh cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A file of an asset cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl From<CacheError> for ShapeError {
+    fn from(error: CacheError) -> Self {
+        match error {
+            CacheError::Build(error) => Self::Build(error),
+            CacheError::File(error) => Self::File(error),
+        }
+    }
+}
+
+impl VpsShapeBuilder {
+    /// Of a mesh in metres.
+    pub fn new(mesh: Mesh) -> Self {
+        Self {
+            mesh,
+            options: BuildOptions::default(),
+            cache: None,
+            role: Role::default(),
+        }
+    }
+
+    /// Of triangles over vertices in metres, counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// When they are no mesh.
+    pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
+        let position = |v: &Vector| v.to_array().map(f64::from).into();
+        let vertices: Vec<_> = vertices.iter().map(position).collect();
+        Ok(Self::new(Mesh::new(&vertices, triangles)?))
+    }
+
+    /// Of an OBJ, PLY, STL or OFF file in metres; `object` is the name of the one to take of several.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn from_mesh_file(path: &Path, object: Option<&str>) -> Result<Self, ShapeError> {
+        Ok(Self::new(read_mesh(path, object)?))
+    }
+
+    /// With another resolution, another number of points, and so on.
+    pub fn options(self, options: BuildOptions) -> Self {
+        Self { options, ..self }
+    }
+
+    /// With another preference for what it is in a pair.
+    pub fn role(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
+
+    /// Kept in a folder by its content: the same mesh with the same options is built once.
+    pub fn cached_in(self, folder: &Path) -> Self {
+        Self {
+            cache: Some(AssetCache::new(folder)),
+            ..self
+        }
+    }
+
+    /// Builds the shape, on all cores; seconds for a fine mesh.
+    ///
+    /// # Errors
+    /// When the mesh cannot be built with these options, or the cache not be written.
+    pub fn build(self) -> Result<VpsShape, ShapeError> {
+        let shape = match &self.cache {
+            Some(cache) => {
+                let cached = cache.get(&self.mesh, &self.options, &|_| ())?;
+                VpsShape::new(cached.asset).in_file(&cached.file)
+            }
+            None => VpsShape::new(Arc::new(build(&self.mesh, &self.options, &|_| ())?.asset)),
+        };
+        Ok(shape.with_role(self.role))
+    }
+
+    /// Builds the shape in a thread of its own.
+    pub fn build_in_background(self) -> ShapeInBackground {
+        ShapeInBackground(std::thread::spawn(|| self.build()))
+    }
+}
+
+/// A shape that is being built.
+#[derive(Debug)]
+pub struct ShapeInBackground(JoinHandle<Result<VpsShape, ShapeError>>);
+
+impl ShapeInBackground {
+    /// Whether [`wait`](Self::wait) would return at once.
+    pub fn is_ready(&self) -> bool {
+        self.0.is_finished()
+    }
+
+    /// The shape, as soon as it is there.
+    ///
+    /// # Errors
+    /// Those of [`VpsShapeBuilder::build`].
+    pub fn wait(self) -> Result<VpsShape, ShapeError> {
+        self.0
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    }
+}
+
+impl VpsShape {
+    /// The shape of a `.vps` file, as the command `vps-build build` makes them.
+    ///
+    /// # Errors
+    /// When it cannot be read or is not a sound asset.
+    pub fn from_file(path: &Path) -> Result<Self, ShapeError> {
+        Ok(Self::new(Arc::new(read_asset(path)?)).in_file(path))
+    }
+}

@@ -1,0 +1,160 @@
+//! Where shapes come from, and where they go.
+
+use std::path::PathBuf;
+
+use vps_build::{BuildOptions, Mesh, PointCount, Resolution, models};
+use vps_rapier::rapier3d::parry::shape::Cuboid;
+use vps_rapier::rapier3d::prelude::*;
+use vps_rapier::{Role, ShapeError, VpsShape, VpsShapeBuilder};
+
+fn options() -> BuildOptions {
+    BuildOptions {
+        resolution: Resolution::VoxelsAlongLongest(20),
+        points: PointCount::About(300),
+        ..BuildOptions::default()
+    }
+}
+
+/// A folder of its own for a test, gone with the value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        Self(std::env::temp_dir().join(format!("vps-{name}-{}", std::process::id())))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn a_shape_is_built_from_triangles_in_the_background_and_kept() {
+    let folder = Folder::new("kept");
+    let (vertices, triangles) = Cuboid::new(Vector::new(0.3, 0.2, 0.1)).to_trimesh();
+    let make = || {
+        VpsShapeBuilder::from_triangles(&vertices, &triangles)
+            .unwrap()
+            .options(options())
+            .role(Role::Voxelmap)
+            .cached_in(&folder.0)
+    };
+    let first = make().build_in_background().wait().unwrap();
+    assert_eq!(first.role(), Role::Voxelmap);
+    let half = first.compute_local_aabb().half_extents();
+    assert!((half - Vector::new(0.3, 0.2, 0.1)).length() < 1e-5);
+    let file = first.file().unwrap().to_path_buf();
+    let read = VpsShape::from_file(&file).unwrap();
+    assert_eq!(read.asset().tree.points(), first.asset().tree.points());
+    // What is in the file is taken, not built again.
+    let sphere = VpsShapeBuilder::new(models::torus(16))
+        .options(options())
+        .build()
+        .unwrap();
+    vps_build::write_asset(&file, sphere.asset()).unwrap();
+    let again = make().build().unwrap();
+    assert_eq!(again.asset().tree.points(), sphere.asset().tree.points());
+}
+
+#[test]
+fn what_is_no_mesh_is_an_error() {
+    let corner = Vector::ZERO;
+    let error = VpsShapeBuilder::from_triangles(&[corner; 3], &[[0, 1, 3]]).unwrap_err();
+    assert!(matches!(error, ShapeError::Mesh(_)), "{error}");
+    let missing = Folder::new("missing");
+    let missing = &missing.0;
+    let error = VpsShape::from_file(missing).err().unwrap();
+    assert!(
+        error.to_string().contains(&*missing.to_string_lossy()),
+        "{error}"
+    );
+    let error = VpsShapeBuilder::from_mesh_file(missing, None).unwrap_err();
+    assert!(
+        error.to_string().contains(&*missing.to_string_lossy()),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_scaled_shape_is_larger_all_over() {
+    let mesh = Mesh::cuboid([0.6, 0.4, 0.5]).unwrap();
+    let shape = VpsShapeBuilder::new(mesh)
+        .options(options())
+        .build()
+        .unwrap();
+    for factor in [0.001, 0.37, 40.0] {
+        let scaled = shape.scale_dyn(Vector::splat(factor), 0).unwrap();
+        let half = scaled.compute_local_aabb().half_extents() / factor;
+        assert!(
+            (half - Vector::new(0.3, 0.2, 0.25)).length() < 1e-5,
+            "{half}"
+        );
+        let mass = scaled.mass_properties(1.0).mass() / factor.powi(3);
+        assert!((mass - 0.12).abs() < 1e-4, "{mass}");
+        let ray = Ray::new(Vector::new(0.05, 2.0, 0.02) * factor, -Vector::Y);
+        let hit = scaled.cast_local_ray(&ray, Real::MAX, true).unwrap() / factor;
+        assert!((hit - 1.8).abs() < 0.005, "{hit}");
+    }
+    assert!(shape.scale_dyn(Vector::new(1.0, 2.0, 1.0), 0).is_none());
+    assert!(shape.scale_dyn(Vector::splat(-1.0), 0).is_none());
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn a_saved_world_goes_on_the_same() {
+    use vps_rapier::{SaveError, SavedShapes, narrow_phase};
+
+    let folder = Folder::new("saved");
+    let builder = VpsShapeBuilder::new(models::torus(16)).options(options());
+    let shape = builder.clone().cached_in(&folder.0).build().unwrap();
+    let mut world = PhysicsWorld {
+        narrow_phase: narrow_phase(),
+        ..PhysicsWorld::default()
+    };
+    world.insert(
+        RigidBodyBuilder::fixed(),
+        ColliderBuilder::cuboid(4.0, 0.1, 4.0),
+    );
+    for i in 0..2 {
+        let start = RigidBodyBuilder::dynamic().translation(Vector::Y * (0.5 + i as Real));
+        world.insert(start, ColliderBuilder::new(shape.clone().into()));
+    }
+    let mut colliders = world.colliders.clone();
+    let shapes = SavedShapes::take_out(&mut colliders).unwrap();
+    let text = serde_json::to_string(&(&colliders, &world.bodies, &shapes)).unwrap();
+    let read: (ColliderSet, RigidBodySet, SavedShapes) = serde_json::from_str(&text).unwrap();
+    let (mut colliders, bodies, shapes) = read;
+    shapes.put_back(&mut colliders).unwrap();
+    let mut second = PhysicsWorld {
+        narrow_phase: narrow_phase(),
+        colliders,
+        bodies,
+        ..PhysicsWorld::default()
+    };
+    for _ in 0..120 {
+        world.step();
+        second.step();
+    }
+    let heights = |w: &PhysicsWorld| {
+        let bodies = w.bodies.iter().map(|(_, b)| b.translation().y);
+        bodies.collect::<Vec<_>>()
+    };
+    assert_eq!(heights(&world).len(), 3);
+    for (a, b) in heights(&world).into_iter().zip(heights(&second)) {
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+    // What is in no file cannot be saved, and stays as it is.
+    let start = RigidBodyBuilder::dynamic();
+    let unsaved: SharedShape = builder.build().unwrap().into();
+    let (_, handle) = world.insert(start, ColliderBuilder::new(unsaved));
+    let error = SavedShapes::take_out(&mut world.colliders).unwrap_err();
+    assert_eq!(error, SaveError::NoFile(handle));
+    assert!(
+        world
+            .colliders
+            .iter()
+            .all(|(_, c)| c.shape().as_ball().is_none())
+    );
+}
