@@ -41,6 +41,9 @@ test-random: (test-with "")
 test-with seed:
     {{ if seed == "" { "" } else { "PROPTEST_RNG_SEED=" + seed } }} cargo test --locked --workspace --exclude vps-bench
     cargo test --locked --release -p vps-bench
+    # Worlds in double precision, on several threads, and in files.
+    cargo test --locked -p vps-rapier --no-default-features --features f64,build --tests
+    cargo test --locked -p vps-rapier --features serde,rapier3d/parallel --test shapes --test switches
 
 # The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
 no-std:
@@ -73,4 +76,6 @@ check:
     cargo fmt --all --check
     cargo clippy --locked --workspace --all-targets -- -D warnings
     cargo clippy --locked -p vps-core --no-default-features --features libm -- -D warnings
+    cargo clippy --locked -p vps-rapier --all-targets --no-default-features --features f64,serde -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
+    RUSTDOCFLAGS="-D warnings" cargo doc --locked -p vps-rapier --features serde --no-deps

@@ -6,31 +6,28 @@
 //! narrow phase, chained to parry's own so that all other pairs collide as before:
 //!
 //! ```
-//! # use std::sync::Arc;
-//! # use rapier3d::prelude::*;
-//! # use vps_build::{BuildOptions, Mesh, build};
-//! use vps_rapier::{VpsShape, narrow_phase};
+//! use rapier3d::prelude::*;
+//! use vps_rapier::{VpsShapeBuilder, narrow_phase};
 //!
-//! # let mesh = Mesh::icosphere(0.5, 3)?;
-//! let asset = Arc::new(build(&mesh, &BuildOptions::default(), &|_| ())?.asset);
+//! let (vertices, triangles) = Cuboid::new(Vector::splat(0.5)).to_trimesh();
+//! let shape = VpsShapeBuilder::from_triangles(&vertices, &triangles)?.build()?;
 //! let mut world = PhysicsWorld { narrow_phase: narrow_phase(), ..PhysicsWorld::default() };
 //! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::cuboid(5.0, 0.1, 5.0));
 //! let above = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
-//! let (ball, _) = world.insert(above, ColliderBuilder::new(VpsShape::new(asset).into()));
+//! let (body, _) = world.insert(above, ColliderBuilder::new(shape.into()));
 //! for _ in 0..120 {
 //!     world.step();
 //! }
-//! assert!((world.bodies[ball].translation().y - 0.6).abs() < 0.01);
+//! assert!((world.bodies[body].translation().y - 0.6).abs() < 0.01);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # What collides
-//! A VPS shape collides with VPS shapes and with every shape of parry that can project a point:
-//! balls, cuboids and half-spaces through exact distance fields, all others through
-//! [`ShapeField`], whose documentation says what it makes of surfaces without an interior. Against
-//! them the VPS shape is always the shell: a shape smaller than the spacing of its points can slip
-//! between them. A VPS shape inside of a compound is not looked at yet: give the body several
-//! colliders in its place.
+//! A VPS shape collides with VPS shapes and with every shape of parry, in compounds too: as a shell
+//! in the exact field of a ball, a cuboid or a half-space, or in the [`ShapeField`] of another, whose
+//! documentation says what it makes of surfaces without an interior; and as the field of points on
+//! the edges of the other, so that what is smaller than the spacing of the shell's points does not
+//! slip between them.
 
 #![forbid(unsafe_code)]
 
@@ -43,6 +40,10 @@ compile_error!("choose one of the features f32 and f64");
 pub extern crate rapier3d;
 #[cfg(feature = "f64")]
 pub extern crate rapier3d_f64 as rapier3d;
+
+#[cfg(feature = "build")]
+pub use vps_build;
+pub use vps_core;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
