@@ -35,11 +35,14 @@
 //! | a few contacts for an engine | [`Query::manifold`] | about that of the deepest |
 //! | one contact a segment (section 2.4) | [`Query::for_each_segment`] | branch and bound in each |
 //! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
+//! | the same, and how it changes with the pose | [`Query::linear_wrench`] | a little more |
 //! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
 //! | as much as there is time for | [`Query::time_critical`] | what you allow |
 //! | the same sooner, from one step to the next | [`Query::with_hint`] | a little less |
 //! | a fast body not to be missed | [`Sweep::first_contact`] | some touches |
 //! | two bodies, either way or both | [`BodyPair`] | one or two queries |
+//!
+//! [`VirtualCoupling`] makes force and torque for a haptic device of it.
 //!
 //! # Conventions
 //! * **Sign**: penetration is positive inside a solid and negative outside;
@@ -73,12 +76,14 @@ mod aabb;
 mod asset;
 mod body_pair;
 pub mod conformance;
+mod coupling;
 mod dispatch;
 mod field;
 pub mod format;
 mod function;
 mod grid;
 mod lanes;
+mod linear_wrench;
 mod manifold;
 mod query;
 mod sampling;
@@ -99,6 +104,7 @@ mod wrench;
 pub use aabb::Aabb;
 pub use asset::{Asset, MassProperties};
 pub use body_pair::{Body, BodyPair, PairContact, Shells, Side};
+pub use coupling::{CouplingError, CouplingOptions, StepError, Tool, VirtualCoupling};
 pub use field::DistanceField;
 #[cfg(feature = "alloc")]
 pub use format::encode;
@@ -107,6 +113,7 @@ pub use function::FieldFn;
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
 pub use grid::{Grid, GridError};
 pub use lanes::{Discs, LANES, Points};
+pub use linear_wrench::LinearWrench;
 pub use manifold::ContactManifold;
 pub use query::{Contact, Query};
 pub use sampling::{Linear, LocalPenetration, Trilinear};

@@ -81,6 +81,24 @@ impl<'q> Sum<'q> {
             torque: self.torque.sum(),
         }
     }
+
+    /// A number of each point times what the point counts, zero for those that are no contacts.
+    #[inline(always)]
+    pub(crate) fn weighted(&self, found: &Found<'_>, numbers: f32x4) -> f32x4 {
+        let numbers = found.counts & numbers;
+        match self.areas {
+            Some(areas) => {
+                numbers * padded(&areas[found.first as usize..], |areas| f32x4::new(*areas))
+            }
+            None => numbers,
+        }
+    }
+
+    /// From the point the torque is about.
+    #[inline(always)]
+    pub(crate) fn arms(&self, found: &Found<'_>) -> Vectors {
+        found.positions.minus(self.center)
+    }
 }
 
 impl Goal for Sum<'_> {
@@ -94,14 +112,10 @@ impl Goal for Sum<'_> {
 
     #[inline(always)]
     fn offer(&mut self, found: &Found<'_>) -> bool {
-        let mut weights = found.counts & found.penetrations.fast_max(f32x4::ZERO);
-        if let Some(areas) = self.areas {
-            weights *= padded(&areas[found.first as usize..], |areas| f32x4::new(*areas));
-        }
+        let weights = self.weighted(found, found.penetrations.fast_max(f32x4::ZERO));
         let force = found.inward.times(weights);
         self.force = self.force.plus(force);
-        let arm = found.positions.minus(self.center);
-        self.torque = self.torque.plus(arm.cross(force));
+        self.torque = self.torque.plus(self.arms(found).cross(force));
         true
     }
 }

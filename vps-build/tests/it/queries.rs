@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use vps_build::{Encoding, Mesh};
 use vps_core::{
     Asset, Ball, Body, BodyPair, Capsule, Contact, ContactManifold, Cuboid, Cylinder,
-    DistanceField, FieldFn, HalfSpace, Mat3, Pose3, Query, Shells, Sweep, Vec3, Voxelmap, Weight,
-    Work, Wrench,
+    DistanceField, FieldFn, HalfSpace, LinearWrench, Mat3, Pose3, Query, Shells, Sweep, Vec3,
+    Voxelmap, Weight, Work, Wrench,
 };
 
 use crate::support::{asset, asset_of, bumpy_mesh, cases, density, encoding, pose, vector};
@@ -108,6 +108,9 @@ fn check_query<F: DistanceField + ?Sized>(
         let tolerance = 1e-5 * size;
         prop_assert!((wrench.force - expected.force).length() <= tolerance);
         prop_assert!((wrench.torque - expected.torque).length() <= tolerance);
+        let linear = query.linear_wrench(center, weight);
+        prop_assert_eq!(linear.wrench, wrench);
+        check_stiffness(&linear, shell, &flat, center, weight)?;
     }
 
     let manifold = query.manifold::<5>();
@@ -138,6 +141,37 @@ fn check_query<F: DistanceField + ?Sized>(
     let work = Work::default();
     prop_assert_eq!(query.counting(&work).deepest(), query.deepest());
     prop_assert!(work.spheres() > 0 && work.points() <= tree.point_count() as u64);
+    Ok(())
+}
+
+/// What a small motion changes, contact by contact.
+fn check_stiffness(
+    linear: &LinearWrench,
+    shell: &Asset<'_>,
+    contacts: &[Contact],
+    center: Vec3,
+    weight: Weight,
+) -> Result<(), TestCaseError> {
+    let (way, turn) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(-0.7, 0.2, 0.4));
+    let (mut force, mut torque, mut size) = (glamx::DVec3::ZERO, glamx::DVec3::ZERO, 0.0);
+    for c in contacts.iter().filter(|c| c.penetration > 0.0) {
+        let weight = match weight {
+            Weight::Point => 1.0,
+            Weight::Area => f64::from(shell.tree.area(c.point as usize)),
+        };
+        let (arm, normal) = ((c.position - center).as_dvec3(), c.normal.as_dvec3());
+        let moved = way.as_dvec3() + turn.as_dvec3().cross(arm);
+        let f = -weight * normal.dot(moved) * normal;
+        force += f;
+        torque += arm.cross(f);
+        size += weight;
+    }
+    let tolerance = 1e-4 * size as f32;
+    let [t, m, r] = [linear.translational, linear.mixed, linear.rotational];
+    let changed = -(t * way + m.transpose() * turn);
+    prop_assert!((changed - force.as_vec3()).length() <= tolerance);
+    let changed = -(m * way + r * turn);
+    prop_assert!((changed - torque.as_vec3()).length() <= tolerance);
     Ok(())
 }
 

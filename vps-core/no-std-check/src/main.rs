@@ -5,7 +5,8 @@
 #![no_main]
 
 use vps_core::{
-    Asset, Body, BodyPair, Cuboid, DistanceField, Pose3, Query, Shells, Sweep, Vec3, Weight, Work,
+    Asset, Body, BodyPair, CouplingOptions, Cuboid, DistanceField, Pose3, Query, Shells, Sweep, Tool,
+    Vec3, VirtualCoupling, Weight, Work,
 };
 
 // Only for its start-up code, which calls `main`.
@@ -67,7 +68,20 @@ fn check() -> Result<(), i32> {
     let pair = BodyPair::new(Body::of_asset(&torus), Body::of_asset(&torus), turned);
     is(pair.with_shells(Shells::Both).touches(), 13)?;
     is(pair.wrench_on_first(Vec3::ZERO, Weight::Point).force.length() > 0.0, 14)?;
-    is(field.signed_distance(Vec3::ZERO) > 0.0, 15)
+    is(field.signed_distance(Vec3::ZERO) > 0.0, 15)?;
+
+    // Pushed into the ground by a device, 5 mm deep.
+    let tool = Tool::of(&torus.mass, 0.1);
+    let options = CouplingOptions::critically_damped(&tool, 1000.0, 10.0);
+    let at = |depth: f32| Pose3::from_translation(Vec3::new(0.0, 0.0, 0.1 + half_height - depth));
+    let mut coupling = VirtualCoupling::new(tool, options, at(0.0)).map_err(|_| 16)?;
+    for _ in 0..500 {
+        let contact = Query::new(&torus.tree, &ground, coupling.pose())
+            .linear_wrench(tool.center, Weight::Area);
+        let contact = (contact * 1e9).rotated(coupling.pose().rotation);
+        coupling.step(at(0.005), contact, 1e-3).map_err(|_| 17)?;
+    }
+    is((coupling.rendered().force.z - 5.0).abs() < 0.2, 18)
 }
 
 /// What the C start-up code calls.
