@@ -60,6 +60,10 @@ query-report: fetch
 query-profile: fetch
     cargo run --locked --release --quiet -p vps-compare --example query_profile
 
+# What bodies do in rapier worlds, beside parry's meshes and convex parts, into reports/behaviour
+behaviour-report: fetch
+    cargo run --locked --release --quiet -p vps-compare --example behaviour
+
 # Random bytes for the readers and the builder, so many seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build
     for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done
