@@ -1,8 +1,9 @@
 //! Solids made by code, for tests, examples and experiments that must not depend on files.
 //!
 //! Each is closed, faces outwards, is about a metre in size and lies around the origin. None is
-//! convex: they have a hole, a cavity, tips or strands that wind around each other. Numbers that
-//! are too small or too large are replaced by the nearest ones allowed, so that nothing here fails.
+//! convex: they have a hole, a cavity, a thread, tips or strands that wind around each other.
+//! Numbers that are too small or too large are replaced by the nearest ones allowed, so that nothing
+//! here fails.
 //!
 //! ```
 //! let torus = vps_build::models::torus(64);
@@ -15,7 +16,13 @@ use glamx::{DVec2, DVec3};
 
 use crate::Mesh;
 
-/// The fewest and the most segments of [`torus`], [`trefoil_knot`] and [`cup`].
+mod parts;
+mod screw;
+
+pub use parts::{link, peg};
+pub use screw::{Thread, bolt, nut};
+
+/// The fewest and the most segments around an axis or along a rod.
 const SEGMENTS: (u32, u32) = (8, 1024);
 
 /// A ring around the z axis, 1 m wide and 0.3 m thick; its hole is 0.4 m wide.
@@ -247,7 +254,7 @@ mod tests {
     use crate::triangle::signed_volume;
 
     /// Volume in m³ of a mesh that is a solid of about a metre with this many handles.
-    fn volume_of(mesh: &Mesh, handles: i64) -> f64 {
+    pub(super) fn volume_of(mesh: &Mesh, handles: i64) -> f64 {
         let health = Health::of(mesh, 0.1);
         assert!(health.is_watertight(), "{health:?}");
         assert_eq!((health.components, health.degenerate_faces), (1, 0));
@@ -262,7 +269,7 @@ mod tests {
     }
 
     /// Whether an edge passes through a triangle that it shares no vertex with.
-    fn cuts_itself(mesh: &Mesh) -> bool {
+    pub(super) fn cuts_itself(mesh: &Mesh) -> bool {
         let passes = |p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]| {
             let above = |p| signed_volume([a, b, c], p);
             let sides = [[p, a, b], [p, b, c], [p, c, a]].map(|t| signed_volume(t, q));
@@ -288,11 +295,11 @@ mod tests {
     }
 
     /// What `n` chords around an axis leave of a turn, and of a circle's area.
-    fn share_of_chords(n: usize) -> f64 {
+    pub(super) fn share_of_chords(n: usize) -> f64 {
         turn(1, n).sin() / turn(1, n)
     }
 
-    fn close(a: f64, b: f64, tolerance: f64) {
+    pub(super) fn close(a: f64, b: f64, tolerance: f64) {
         assert!((a - b).abs() <= tolerance * b, "{a} is not {b}");
     }
 
@@ -389,7 +396,7 @@ mod tests {
 
     #[test]
     fn numbers_out_of_range_are_replaced() {
-        for model in [torus, trefoil_knot, cup] {
+        for model in [torus, trefoil_knot, cup, peg, link] {
             assert_eq!(model(0).triangles(), model(SEGMENTS.0).triangles());
         }
         assert_eq!(gear(0).triangles().len(), gear(3).triangles().len());

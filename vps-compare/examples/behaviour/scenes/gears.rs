@@ -1,0 +1,62 @@
+use std::f32::consts::{PI, TAU};
+
+use rapier3d::prelude::*;
+
+use super::Turned;
+use crate::models::{GEAR, GEAR_SCALE, Kind, SMALL_GEAR};
+use crate::record::{Finding, Row};
+use crate::stage::{Material, Stage};
+
+pub(super) const ABOUT: &str = "\
+A motor turns a gear wheel of 16 teeth at 3 rad/s, which drives one of 12 on an axle that brakes. In
+5 s the driven one must turn 16 / 12 times as far, to within 2 % (the play of the teeth is less), and
+the motor must not jam.";
+
+pub(super) fn play(kind: Kind) -> Row {
+    let material = Material {
+        friction: 0.2,
+        restitution: 0.0,
+    };
+    let mut stage = Stage::new(kind, 60.0, material);
+    // Tips of the large one reach 3 mm short of the roots of the small one.
+    let distance = (0.5 + 0.38 * 12.0 / 16.0 + 0.01) * GEAR_SCALE;
+    // The middle of a tooth faces the middle of a gap.
+    let tooth_to_x = Rotation::from_rotation_z(-0.25 * TAU / 16.0);
+    let gap_to_minus_x = Rotation::from_rotation_z(PI - 0.75 * TAU / 12.0);
+    let driving = stage.add(
+        &GEAR,
+        RigidBodyBuilder::dynamic().pose(Pose::from_parts(Vector::ZERO, tooth_to_x)),
+    );
+    let driven = stage.add(
+        &SMALL_GEAR,
+        RigidBodyBuilder::dynamic()
+            .pose(Pose::from_parts(Vector::X * distance, gap_to_minus_x))
+            .angular_damping(1.0),
+    );
+    let axles = stage.world.insert_body(RigidBodyBuilder::fixed());
+    let axle = |x: f32| RevoluteJointBuilder::new(Vector::Z).local_anchor1(Vector::X * x);
+    let motor = axle(0.0).motor_velocity(3.0, 1e3);
+    stage.world.insert_impulse_joint(axles, driving, motor);
+    stage
+        .world
+        .insert_impulse_joint(axles, driven, axle(distance));
+    let rotation = |stage: &Stage, gear| stage.body(gear).position().rotation;
+    // Until the teeth touch.
+    stage.go(0.5);
+    let [mut first, mut second] =
+        [driving, driven].map(|gear| Turned::from(rotation(&stage, gear)));
+    let is_complete = stage.run(5.0, |stage| {
+        first.follow(rotation(stage, driving));
+        second.follow(rotation(stage, driven));
+        false
+    });
+    let ratio = -second.total / first.total;
+    let off = 100.0 * (ratio * 12.0 / 16.0 - 1.0);
+    let finding = Finding {
+        what: "ratio off by %",
+        value: is_complete.then_some(off),
+        digits: 2,
+        is_good: off.abs() < 2.0 && first.total > 10.0,
+    };
+    Row::new("gear on gear", &stage, None, finding)
+}

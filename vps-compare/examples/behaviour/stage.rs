@@ -1,0 +1,237 @@
+//! A world, stepped and watched.
+
+use std::time::{Duration, Instant};
+
+use rapier3d::prelude::*;
+use vps_core::{Body, BodyPair, Query, Shells};
+
+use crate::models::{Kind, Model};
+
+/// Friction and restitution of all bodies of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Material {
+    pub(crate) friction: f32,
+    pub(crate) restitution: f32,
+}
+
+/// What most scenes are made of.
+pub(crate) const PLAIN: Material = Material {
+    friction: 0.5,
+    restitution: 0.0,
+};
+
+/// How often it is looked how deep bodies are, in steps.
+const LOOK_EVERY: u32 = 5;
+
+/// A world of bodies that all collide as one kind.
+pub(crate) struct Stage {
+    pub(crate) world: PhysicsWorld,
+    pub(crate) kind: Kind,
+    material: Material,
+    bodies: Vec<(RigidBodyHandle, &'static Model)>,
+    boxes: Vec<(Pose, vps_core::Cuboid)>,
+    /// Steps made.
+    pub(crate) steps: u32,
+    /// Whether all steps that were asked for were made.
+    pub(crate) is_complete: bool,
+    stepping: Duration,
+    limit: Duration,
+    /// The deepest any body has been in another, in metres.
+    pub(crate) deepest_m: f32,
+}
+
+/// How still bodies are that should be at rest.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Rest {
+    /// How far the centre of a body got, at most, in metres.
+    pub(crate) drift_m: f32,
+    /// The highest speed of any part of a body, at most, in m/s.
+    pub(crate) speed_m_s: f32,
+    /// The highest kinetic energy of all bodies together in J.
+    pub(crate) energy_j: f32,
+}
+
+impl Stage {
+    /// An empty world; y is up.
+    pub(crate) fn new(kind: Kind, frequency_hz: f32, material: Material) -> Self {
+        let mut world = PhysicsWorld::default();
+        if kind.is_vps() {
+            world.narrow_phase = vps_rapier::narrow_phase();
+        }
+        let parameters = &mut world.integration_parameters;
+        parameters.dt = 1.0 / frequency_hz;
+        parameters.contact_recycling = false;
+        Self {
+            world,
+            kind,
+            material,
+            bodies: Vec::new(),
+            boxes: Vec::new(),
+            steps: 0,
+            is_complete: true,
+            stepping: Duration::ZERO,
+            limit: Duration::from_secs(12),
+            deepest_m: 0.0,
+        }
+    }
+
+    /// Stops stepping after so many seconds of it.
+    pub(crate) fn with_limit(self, seconds: u64) -> Self {
+        Self {
+            limit: Duration::from_secs(seconds),
+            ..self
+        }
+    }
+
+    /// A fixed box with these edges in metres.
+    pub(crate) fn add_box(&mut self, extents: [f32; 3], pose: Pose) {
+        let [x, y, z] = extents.map(|e| 0.5 * e);
+        let collider = self.collider(SharedShape::cuboid(x, y, z));
+        self.world
+            .insert(RigidBodyBuilder::fixed().pose(pose), collider);
+        self.boxes
+            .push((pose, vps_core::Cuboid::new(Vector::new(x, y, z))));
+    }
+
+    /// A box 0.2 m thick with its upper side at height 0.
+    pub(crate) fn add_ground(&mut self) {
+        self.add_box([4.0, 0.2, 4.0], Pose::translation(0.0, -0.1, 0.0));
+    }
+
+    /// A body, its mass that of the solid whatever it collides as.
+    pub(crate) fn add(&mut self, model: &'static Model, body: RigidBodyBuilder) -> RigidBodyHandle {
+        let body = body
+            .additional_mass_properties(model.mass())
+            .can_sleep(false);
+        let collider = self.collider(model.shape(self.kind));
+        let (handle, _) = self.world.insert(body, collider);
+        self.bodies.push((handle, model));
+        handle
+    }
+
+    fn collider(&self, shape: SharedShape) -> ColliderBuilder {
+        ColliderBuilder::new(shape)
+            .density(0.0)
+            .friction(self.material.friction)
+            .restitution(self.material.restitution)
+    }
+
+    pub(crate) fn body(&self, handle: RigidBodyHandle) -> &RigidBody {
+        &self.world.bodies[handle]
+    }
+
+    /// Frequency of steps in Hz.
+    pub(crate) fn frequency_hz(&self) -> f32 {
+        1.0 / self.world.integration_parameters.dt
+    }
+
+    /// Steps for so many seconds or until `is_over` of what is after a step; `false` if time ran
+    /// out before or a body left all bounds.
+    pub(crate) fn run(&mut self, seconds: f32, mut is_over: impl FnMut(&Self) -> bool) -> bool {
+        let steps = (seconds * self.frequency_hz()).round() as u32;
+        for _ in 0..steps {
+            if self.stepping >= self.limit || !self.is_sound() {
+                self.is_complete = false;
+                return false;
+            }
+            let start = Instant::now();
+            self.world.step();
+            self.stepping += start.elapsed();
+            self.steps += 1;
+            if self.steps.is_multiple_of(LOOK_EVERY) {
+                self.deepest_m = self.deepest_m.max(self.depth());
+            }
+            if is_over(self) {
+                break;
+            }
+        }
+        true
+    }
+
+    /// Steps for so many seconds.
+    pub(crate) fn go(&mut self, seconds: f32) -> bool {
+        self.run(seconds, |_| false)
+    }
+
+    /// Steps for so many seconds in which bodies should be at rest.
+    pub(crate) fn watch(&mut self, seconds: f32) -> Option<Rest> {
+        let before = self.centers();
+        let mut rest = Rest::default();
+        let is_complete = self.run(seconds, |stage| {
+            rest.speed_m_s = rest.speed_m_s.max(stage.speed());
+            rest.energy_j = rest.energy_j.max(stage.energy());
+            false
+        });
+        let moved = self.centers().into_iter().zip(before);
+        rest.drift_m = moved
+            .map(|(now, then)| now.distance(then))
+            .fold(0.0, f32::max);
+        is_complete.then_some(rest)
+    }
+
+    /// Mean speed of all steps in steps a second.
+    pub(crate) fn steps_per_s(&self) -> f64 {
+        f64::from(self.steps) / self.stepping.as_secs_f64()
+    }
+
+    /// Time taken by steps.
+    pub(crate) fn stepping_s(&self) -> f64 {
+        self.stepping.as_secs_f64()
+    }
+
+    /// All bodies that are models.
+    pub(crate) fn models(&self) -> impl Iterator<Item = (&RigidBody, &'static Model)> {
+        self.bodies
+            .iter()
+            .map(|&(handle, model)| (&self.world.bodies[handle], model))
+    }
+
+    fn is_sound(&self) -> bool {
+        self.models().all(|(body, _)| body.position().is_finite())
+    }
+
+    fn centers(&self) -> Vec<Vector> {
+        self.models()
+            .map(|(body, _)| body.center_of_mass())
+            .collect()
+    }
+
+    /// What no part of any body is faster than, in m/s.
+    pub(crate) fn speed(&self) -> f32 {
+        self.models()
+            .map(|(body, model)| body.linvel().length() + body.angvel().length() * model.reach())
+            .fold(0.0, f32::max)
+    }
+
+    fn energy(&self) -> f32 {
+        self.models().map(|(body, _)| body.kinetic_energy()).sum()
+    }
+
+    /// How deep the deepest point of a body is in another, in metres; 0 if all are apart. By shells
+    /// and voxelmaps of all bodies, whatever they collide as.
+    pub(crate) fn depth(&self) -> f32 {
+        let bodies: Vec<_> = self.models().collect();
+        let mut deepest = 0.0_f32;
+        for (i, (a, model_a)) in bodies.iter().enumerate() {
+            for (b, model_b) in &bodies[i + 1..] {
+                let apart = a.center_of_mass().distance(b.center_of_mass());
+                if apart > model_a.reach() + model_b.reach() || a.is_fixed() && b.is_fixed() {
+                    continue;
+                }
+                let [in_a, in_b] = [model_a, model_b].map(|m| Body::of_asset(&m.asset));
+                let b_to_a = a.position().inv_mul(b.position());
+                let pair = BodyPair::new(in_a, in_b, b_to_a).with_shells(Shells::Both);
+                deepest = deepest.max(pair.deepest().map_or(0.0, |c| c.penetration));
+            }
+            if a.is_fixed() {
+                continue;
+            }
+            for (pose, cuboid) in &self.boxes {
+                let to_box = pose.inv_mul(a.position());
+                let contact = Query::new(&model_a.asset.tree, cuboid, to_box).deepest();
+                deepest = deepest.max(contact.map_or(0.0, |c| c.penetration));
+            }
+        }
+        deepest
+    }
+}
