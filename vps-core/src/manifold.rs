@@ -15,14 +15,18 @@ const CLOSE: f32 = 0.01;
 /// are left.
 const LEAST_WEIGHT: f32 = 1.0 / 2.0;
 
+/// What a contact counts whose normal is square to that of the deepest.
+const ASKEW: f32 = 0.25;
+
 /// At most `N` contacts that stand for a contact set: the deepest one first, then those that
 /// spread the manifold over the largest area (section 3.2).
 ///
 /// What a point adds to the area counts less the further outside of the solid it is, half at a
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than half of what the deepest does only fill up what places the others leave. Of equally
-/// good contacts the first is taken.
+/// than half of what the deepest does only fill up what places the others leave. And it counts less
+/// the more its normal is askew, down to a quarter: points a little inside of an edge come before
+/// those on it, whose normals belong to neither side. Of equally good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
@@ -342,19 +346,29 @@ impl<const N: usize> Polygon<N> {
 
     /// What a contact adds, weighted; `None` if nothing.
     fn score(&self, contact: &Contact) -> Option<f32> {
+        // Rounding makes area of nothing.
+        if self.corners[..self.len].contains(&contact.position) {
+            return None;
+        }
         let position = Vectors::splat(contact.position);
         let penetration = f32x4::splat(contact.penetration);
         let score = self.scores(position, penetration).to_array()[0];
-        (score > 0.0).then_some(score)
+        (score > 0.0).then_some(score * self.facing(contact.normal))
     }
 
-    /// What contacts add, weighted.
+    /// How much a contact counts by its normal, up to one: less where the shell bends away.
+    fn facing(&self, normal: Vec3) -> f32 {
+        let cosine = normal.dot(self.along);
+        ASKEW + (1.0 - ASKEW) * (cosine * cosine).min(1.0)
+    }
+
+    /// What contacts add, weighted, but for their normals.
     #[inline(always)]
     fn scores(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
         self.gains(positions, |_| f32x4::ZERO) * self.weights(penetrations)
     }
 
-    /// The highest score of any contact in a disc.
+    /// The highest score of any contact in a disc, whatever its normal.
     #[inline(always)]
     fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
         // More than rounding can make of it.

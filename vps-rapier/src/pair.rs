@@ -1,9 +1,9 @@
 //! Two shapes of which at least one is a VPS shape.
 
 use rapier3d::parry::shape::{PackedFeatureId, Shape};
-use vps_core::Pose3;
+use vps_core::{Pose3, Vec3};
 
-use crate::contact::{PairContact, is_as_good, spread};
+use crate::contact::{PairContact, are_opposed, is_as_good, settle_normals, spread, turn_all};
 use crate::probe::Probe;
 use crate::way::{MANIFOLD_SIZE, Way};
 use crate::{Manifolds, Role, Sampling, VpsShape};
@@ -18,6 +18,10 @@ pub(crate) struct Pair<'s> {
 
 /// How many spacings of the points a shape must be thick to be met by points alone.
 const THICK: f32 = 2.0;
+
+/// From which part of the size of a shell on it is so deep that the closest surface may be the wrong
+/// way out.
+const DEEP: f32 = 0.02;
 
 /// By how much of the size of a shell contacts may be less deep than the best there are, and stay.
 const STILL: f32 = 1e-4;
@@ -133,8 +137,9 @@ impl<'s> Pair<'s> {
                 if let Some(kept) = kept
                     && is_as_good(&kept, &found, STILL * self.size())
                 {
-                    return kept;
+                    found = kept;
                 }
+                self.settle(&mut found, pos12);
             }
             Manifolds::Segments(_) if found.len() > by_shells => {
                 let mut probed = found.split_off(by_shells);
@@ -144,6 +149,22 @@ impl<'s> Pair<'s> {
             _ => {}
         }
         found
+    }
+
+    /// Lets contacts of one pair pull together, as far as they should.
+    fn settle(&self, contacts: &mut Vec<PairContact>, pos12: &Pose3) {
+        settle_normals(contacts, pos12);
+        let deepest = contacts.iter().map(|c| c.penetration);
+        let deepest = deepest.fold(f32::NEG_INFINITY, f32::max);
+        if deepest > DEEP * self.size() && are_opposed(contacts) {
+            let push = self
+                .ways()
+                .map(|way| way.push_on_first(pos12))
+                .sum::<Vec3>();
+            if push != Vec3::ZERO {
+                turn_all(contacts, -push.normalize(), pos12);
+            }
+        }
     }
 
     /// What the contacts of the step before are now, if all can be told.
@@ -171,12 +192,9 @@ impl<'s> Pair<'s> {
         self.ways().map(Way::size).fold(f32::INFINITY, f32::min)
     }
 
-    /// A distance in metres that the shapes have at least, as far as points tell; never more than
-    /// that.
-    pub(crate) fn clearance(&self, pos12: &Pose3) -> f32 {
-        let by_shells = self.ways().map(|way| way.clearance(pos12));
-        let by_shells = by_shells.fold(f32::INFINITY, f32::min);
-        let by_probe = self.probe.as_ref().map(|p| p.clearance(pos12, by_shells));
-        by_probe.unwrap_or(by_shells)
+    /// How far what is found may be off in metres, anywhere.
+    pub(crate) fn error(&self) -> f32 {
+        let of_probe = self.probe.as_ref().map_or(0.0, Probe::error);
+        self.ways().map(Way::error).fold(of_probe, f32::max)
     }
 }

@@ -28,6 +28,8 @@ pub(crate) struct Probe<'s> {
     shape: &'s dyn Shape,
     field: Trilinear<'s>,
     solid: Aabb,
+    /// What the error of the field may be more far from the surface, in metres.
+    far_error: f32,
     /// Metres between points.
     step: f32,
     /// Whether the shape of parry is the first of the two.
@@ -49,6 +51,7 @@ impl<'s> Probe<'s> {
             shape,
             field: map.trilinear(),
             solid: map.solid(),
+            far_error: map.accuracy().far_m,
             step: STEP * map.grid().voxel_size(),
             is_first,
         }
@@ -76,6 +79,8 @@ impl<'s> Probe<'s> {
                     center - inward * at_center,
                 ],
                 normals: [out_of_probe, -inward],
+                by_shell: None,
+                shell_is_first: true,
                 ids: [PackedFeatureId::edge(tip.id), PackedFeatureId::UNKNOWN],
                 penetration,
             };
@@ -98,16 +103,9 @@ impl<'s> Probe<'s> {
         touches
     }
 
-    /// A distance in metres that every point has at least from the VPS shape, or `within` if that is
-    /// less.
-    pub(crate) fn clearance(&self, pos12: &Pose3, within: f32) -> f32 {
-        let pose = self.to_field(pos12);
-        let mut least = within;
-        self.for_each_tip(&pose, within.max(0.0), &mut |tip| {
-            let center = pose.transform_point(tip.center);
-            least = least.min(-self.field.penetration_bound(center, tip.radius));
-        });
-        least
+    /// How far what the voxelmap says may be off anywhere in metres.
+    pub(crate) fn error(&self) -> f32 {
+        self.field.error_bound() + self.far_error
     }
 
     /// The size of the voxels in metres.

@@ -3,7 +3,7 @@
 use rapier3d::parry::shape::{FeatureId, PackedFeatureId, Shape, TypedShape};
 use vps_core::{
     Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
-    PointSphereTree, Pose3, Query, Trilinear, Vec3,
+    PointSphereTree, Pose3, Query, Trilinear, Vec3, Weight,
 };
 
 use crate::contact::PairContact;
@@ -17,6 +17,8 @@ pub(crate) const MANIFOLD_SIZE: usize = 4;
 pub(crate) struct Way<'s> {
     tree: &'s PointSphereTree<'static>,
     field: Field<'s>,
+    /// What the error of the field may be more far from the surface, in metres.
+    far_error: f32,
     /// Whether the first of the two shapes is the shell.
     shell_is_first: bool,
 }
@@ -60,6 +62,7 @@ impl<'s> Way<'s> {
                 Sampling::Trilinear => Field::Trilinear(map.trilinear()),
                 Sampling::Local => Field::Local(map.local()),
             },
+            far_error: map.accuracy().far_m,
             shell_is_first,
         }
     }
@@ -85,6 +88,7 @@ impl<'s> Way<'s> {
         Self {
             tree: &shell.asset().tree,
             field,
+            far_error: 0.0,
             shell_is_first,
         }
     }
@@ -172,6 +176,21 @@ impl<'s> Way<'s> {
         });
     }
 
+    /// The direction the first shape is pushed in by all points that are inside together, in its own
+    /// frame, of length one or zero. Lists them all.
+    pub(crate) fn push_on_first(&self, pos12: &Pose3) -> Vec3 {
+        let pose = self.shell_to_field(pos12);
+        let wrench = with_field!(self, field => {
+            Query::new(self.tree, field, pose).wrench(Vec3::ZERO, Weight::Area)
+        });
+        let on_shell = wrench.force.normalize_or_zero();
+        if self.shell_is_first {
+            on_shell
+        } else {
+            -(pose.rotation * on_shell)
+        }
+    }
+
     /// How finely the field is sampled: the size of its voxels in metres, 0 if it is exact.
     pub(crate) fn resolution(&self) -> f32 {
         match &self.field {
@@ -186,14 +205,9 @@ impl<'s> Way<'s> {
         self.tree.bounds().extents().length()
     }
 
-    /// A distance in metres that every point of the shell has at least from the solid; less than
-    /// the true one by the errors of the field, never more. Tests every point.
-    pub(crate) fn clearance(&self, pos12: &Pose3) -> f32 {
-        let pose = self.shell_to_field(pos12);
-        let points = (0..self.tree.point_count()).map(|i| pose.transform_point(self.tree.point(i)));
-        with_field!(self, field => points
-            .map(|p| -field.penetration_bound(p, 0.0))
-            .fold(f32::INFINITY, f32::min))
+    /// How far what the field says may be off anywhere in metres.
+    pub(crate) fn error(&self) -> f32 {
+        with_field!(self, field => field.error_bound()) + self.far_error
     }
 
     fn shell_to_field(&self, pos12: &Pose3) -> Pose3 {
@@ -213,7 +227,7 @@ impl<'s> Way<'s> {
         }
     }
 
-    /// Takes the normal of the field, which does not depend on how the shell was sampled; where
+    /// With the normal of the field, which does not depend on how the shell was sampled; where
     /// the field has none, that of the shell.
     fn on_surfaces(&self, shell_to_field: &Pose3, contact: &Contact) -> PairContact {
         let in_field = shell_to_field.transform_point(contact.position);
@@ -224,9 +238,16 @@ impl<'s> Way<'s> {
         let on_field = in_field - inward * contact.penetration;
         let of_shell = shell_to_field.rotation.inverse() * inward;
         let point = PackedFeatureId::vertex(contact.point);
+        let by_shell = if self.shell_is_first {
+            -contact.normal
+        } else {
+            shell_to_field.rotation * contact.normal
+        };
         PairContact {
             points: self.in_order(contact.position, on_field),
             normals: self.in_order(of_shell, -inward),
+            by_shell: Some(by_shell),
+            shell_is_first: self.shell_is_first,
             ids: self.in_order(point, PackedFeatureId::UNKNOWN),
             penetration: contact.penetration,
         }
