@@ -118,24 +118,32 @@ fn spread_of(contacts: &[PairContact]) -> f32 {
 /// How much better the normals of the shell must agree than those of the field to be the measure.
 const BETTER: f32 = 1.01;
 
+/// How long the mean of all normals must be to say something about each.
+const TOGETHER: f32 = 0.5;
+
 /// Where the normals of field and shell disagree, one of the two has an edge there, and any direction
 /// between them is one the other can lie on: takes the one closest to what the contacts say together,
 /// by the field or by the shell, whichever agree better among themselves. So a face that lies on a
-/// face is not pushed aside where either ends.
+/// face is not pushed aside where either ends. Contacts all around, as in a thread, keep the normals
+/// of the field.
 pub(crate) fn settle_normals(contacts: &mut [PairContact], pos12: &Pose3) {
-    let (mut by_field, mut by_shell) = (Vec3::ZERO, Vec3::ZERO);
+    let (mut by_field, mut by_shell, mut total) = (Vec3::ZERO, Vec3::ZERO, 0.0);
     for contact in &*contacts {
         let of_shell = contact.by_shell.unwrap_or(contact.normals[0]);
         // Those that agree know best.
         let agreement = contact.normals[0].dot(of_shell).max(0.0).powi(4) + LEAST_SAY;
         by_field += contact.normals[0] * agreement;
         by_shell += of_shell * agreement;
+        total += agreement;
     }
     let all = if by_shell.length() > BETTER * by_field.length() {
         by_shell
     } else {
         by_field
     };
+    if all.length() < TOGETHER * total {
+        return;
+    }
     for contact in contacts {
         if let Some(by_shell) = contact.by_shell {
             contact.turn(closest_between(contact.normals[0], by_shell, all), pos12);

@@ -1,5 +1,8 @@
 //! Where shapes come from, and where they go.
 
+// Numbers of rapier are 32-bit or 64-bit.
+#![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
+
 use std::path::PathBuf;
 
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, models};

@@ -1,5 +1,8 @@
 //! The switches of rapier, and what must not depend on them.
 
+// Numbers of rapier are 32-bit or 64-bit.
+#![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
+
 use std::sync::Arc;
 
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build, models};

@@ -1,5 +1,8 @@
 //! Every pair of a VPS shape and another collides, in both orders.
 
+// Numbers of rapier are 32-bit or 64-bit.
+#![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
+
 use std::sync::Arc;
 
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
