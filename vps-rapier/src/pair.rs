@@ -84,27 +84,18 @@ impl<'s> Pair<'s> {
 
     /// The deepest contact up to `margin` metres away.
     pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
-        let mut deepest: Option<PairContact> = None;
-        let mut offer = |contact: PairContact| {
-            if deepest.is_none_or(|d| contact.penetration > d.penetration) {
-                deepest = Some(contact);
-            }
+        let deeper = |a: PairContact, b: PairContact| {
+            if b.penetration > a.penetration { b } else { a }
         };
-        self.ways()
-            .filter_map(|way| way.deepest(pos12, margin))
-            .for_each(&mut offer);
+        let by_shells = self.ways().filter_map(|way| way.deepest(pos12, margin));
+        let deepest = by_shells.reduce(deeper);
+        let mut probed = Vec::new();
         if let Some(probe) = &self.probe {
             // What is further away than a point of the shell is not the deepest.
             let least = deepest.map_or(margin, |d| -d.penetration);
-            let mut found = Vec::new();
-            probe.contacts(pos12, least, &mut found);
-            for contact in found {
-                if deepest.is_none_or(|d| contact.penetration > d.penetration) {
-                    deepest = Some(contact);
-                }
-            }
+            probe.contacts(pos12, least, &mut probed);
         }
-        deepest
+        deepest.into_iter().chain(probed).reduce(deeper)
     }
 
     /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of those of
