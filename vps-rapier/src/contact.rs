@@ -82,14 +82,16 @@ pub(crate) fn spread<const N: usize>(contacts: &mut Vec<PairContact>, margin: f3
     *contacts = picked.map(|c| contacts[c.point as usize]).collect();
 }
 
+/// The largest penetration in metres, minus infinity of none.
+pub(crate) fn deepest(contacts: &[PairContact]) -> f32 {
+    let depths = contacts.iter().map(|c| c.penetration);
+    depths.fold(f32::NEG_INFINITY, f32::max)
+}
+
 /// Whether contacts of the step before are as good as the ones an engine would get now: as many,
-/// almost as deep (but for `tolerance` where all are shallow), and almost as wide apart. Then they stay, so that a body at rest is not
-/// handed from one choice among many equal ones to the next.
+/// almost as deep (but for `tolerance` where all are shallow), and almost as wide apart. Then they
+/// stay, so that a body at rest is not handed from one choice among many equal ones to the next.
 pub(crate) fn is_as_good(before: &[PairContact], now: &[PairContact], tolerance: f32) -> bool {
-    let deepest = |contacts: &[PairContact]| {
-        let depths = contacts.iter().map(|c| c.penetration);
-        depths.fold(f32::NEG_INFINITY, f32::max)
-    };
     let shallowest = |contacts: &[PairContact]| {
         let depths = contacts.iter().map(|c| c.penetration);
         depths.fold(f32::INFINITY, f32::min)

@@ -3,7 +3,9 @@
 use rapier3d::parry::shape::{PackedFeatureId, Shape};
 use vps_core::{Pose3, Vec3};
 
-use crate::contact::{PairContact, are_opposed, is_as_good, settle_normals, spread, turn_all};
+use crate::contact::{
+    PairContact, are_opposed, deepest, is_as_good, settle_normals, spread, turn_all,
+};
 use crate::probe::Probe;
 use crate::way::{MANIFOLD_SIZE, Way};
 use crate::{Manifolds, Role, Sampling, VpsShape};
@@ -121,7 +123,7 @@ impl<'s> Pair<'s> {
         let has_more = found.len() > by_shells || self.ways[1].is_some();
         match manifolds {
             Manifolds::Spread => {
-                let kept = self.again(pos12, before, &found[by_shells..]);
+                let kept = self.again(pos12, before, &found);
                 if has_more {
                     spread::<MANIFOLD_SIZE>(&mut found, margin);
                 }
@@ -145,9 +147,7 @@ impl<'s> Pair<'s> {
     /// Lets contacts of one pair pull together, as far as they should.
     fn settle(&self, contacts: &mut Vec<PairContact>, pos12: &Pose3) {
         settle_normals(contacts, pos12);
-        let deepest = contacts.iter().map(|c| c.penetration);
-        let deepest = deepest.fold(f32::NEG_INFINITY, f32::max);
-        if deepest > DEEP * self.size() && are_opposed(contacts) {
+        if deepest(contacts) > DEEP * self.size() && are_opposed(contacts) {
             let push = self
                 .ways()
                 .map(|way| way.push_on_first(pos12))
@@ -158,16 +158,17 @@ impl<'s> Pair<'s> {
         }
     }
 
-    /// What the contacts of the step before are now, if all can be told.
+    /// What the contacts of the step before are now, if all can be told; those found again are not
+    /// looked at twice.
     fn again(
         &self,
         pos12: &Pose3,
         before: &[[PackedFeatureId; 2]],
-        probed: &[PairContact],
+        found: &[PairContact],
     ) -> Option<Vec<PairContact>> {
         let one = |&ids: &[PackedFeatureId; 2]| {
-            let by_shell = self.ways().find_map(|way| way.again(pos12, ids));
-            by_shell.or_else(|| probed.iter().find(|c| c.ids == ids).copied())
+            let again = found.iter().find(|c| c.ids == ids).copied();
+            again.or_else(|| self.ways().find_map(|way| way.again(pos12, ids)))
         };
         before.iter().map(one).collect()
     }

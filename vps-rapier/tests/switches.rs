@@ -3,21 +3,12 @@
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
 
-use std::sync::Arc;
+mod support;
 
-use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build, models};
-use vps_core::Asset;
+use support::asset;
+use vps_build::{Mesh, models};
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{VpsShape, narrow_phase};
-
-fn asset(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
-    let options = BuildOptions {
-        resolution: Resolution::VoxelsAlongLongest(40),
-        points: PointCount::About(points),
-        ..BuildOptions::default()
-    };
-    Arc::new(build(mesh, &options, &|_| ()).unwrap().asset)
-}
 
 fn empty_world() -> PhysicsWorld {
     PhysicsWorld {

@@ -3,9 +3,10 @@
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
 
-use std::sync::Arc;
+mod support;
 
-use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
+use support::asset;
+use vps_build::Mesh;
 use vps_rapier::rapier3d::parry::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher,
 };
@@ -31,12 +32,7 @@ const OPEN: [&str; 3] = ["sheet of triangles", "height field", "triangle"];
 /// A box as a VPS shape.
 fn vps_box(half: [f64; 3], points: u32) -> VpsShape {
     let mesh = Mesh::cuboid(half.map(|h| 2.0 * h)).unwrap();
-    let options = BuildOptions {
-        resolution: Resolution::VoxelsAlongLongest(40),
-        points: PointCount::About(points),
-        ..BuildOptions::default()
-    };
-    VpsShape::new(Arc::new(build(&mesh, &options, &|_| ()).unwrap().asset))
+    VpsShape::new(asset(&mesh, points))
 }
 
 fn mesh(half: Vector) -> (Vec<Vector>, Vec<[u32; 3]>) {

@@ -1,24 +1,16 @@
 //! Bodies in worlds, and queries about shapes whose answers are known.
 
-use std::sync::Arc;
+mod support;
 
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
 use rapier3d::parry::utils::Array2;
 use rapier3d::prelude::*;
-use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
+use support::asset;
+use vps_build::Mesh;
+use vps_core::DistanceField;
 use vps_core::conformance::check;
-use vps_core::{Asset, DistanceField};
 use vps_rapier::{Role, Sampling, ShapeField, VpsDispatcher, VpsShape, narrow_phase};
-
-fn asset(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
-    let options = BuildOptions {
-        resolution: Resolution::VoxelsAlongLongest(40),
-        points: PointCount::About(points),
-        ..BuildOptions::default()
-    };
-    Arc::new(build(mesh, &options, &|_| ()).unwrap().asset)
-}
 
 /// A thick L: not convex, and its hull would stand differently.
 fn angle_bracket() -> Mesh {
