@@ -3,7 +3,7 @@ use wide::f32x4;
 
 use crate::dispatch::dispatch;
 use crate::lanes::{Vectors, lanes_in};
-use crate::query::Deepest;
+use crate::query::{Deepest, TOP};
 use crate::search::{Found, Goal};
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
@@ -11,9 +11,12 @@ use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
 /// At which fraction of the margin outside of the solid a contact counts half.
 const CLOSE: f32 = 0.01;
 
-/// Contacts that count less than this part of what the deepest does are picked only when no others
-/// are left.
-const LEAST_WEIGHT: f32 = 1.0 / 2.0;
+/// Contacts that count less than such a part of what the deepest does are picked only when no others
+/// are left, and only until a body can stand on what was picked. Zero stands for the margin.
+const LEAST_WEIGHTS: [f32; 3] = [1.0 / 2.0, 1.0 / 256.0, 0.0];
+
+/// On so many corners a body stands.
+const STANDS_ON: usize = 3;
 
 /// What a contact counts whose normal is square to that of the deepest.
 const ASKEW: f32 = 0.25;
@@ -24,9 +27,10 @@ const ASKEW: f32 = 0.25;
 /// What a point adds to the area counts less the further outside of the solid it is, half at a
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than half of what the deepest does only fill up what places the others leave. And it counts less
-/// the more its normal is askew, down to a quarter: points a little inside of an edge come before
-/// those on it, whose normals belong to neither side. Of equally good contacts the first is taken.
+/// than half of what the deepest does are picked only if fewer than three others are there: what a
+/// body may fall on next. And it counts less the more its normal is askew, down to a quarter: points
+/// a little inside of an edge come before those on it, whose normals belong to neither side. Of
+/// equally good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
@@ -51,7 +55,7 @@ impl<const N: usize> ContactManifold<N> {
     /// [`Query::manifold`] gives the same without a list of all contacts.
     pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
         Self::pick(
-            || best(contacts, |c| Some(c.penetration)),
+            best(contacts, |c| Some(c.penetration)),
             |_| along,
             margin,
             |polygon| best(contacts, |c| polygon.score(c)),
@@ -59,31 +63,36 @@ impl<const N: usize> ContactManifold<N> {
     }
 
     fn pick(
-        deepest: impl FnOnce() -> Option<Contact>,
+        deepest: Option<Contact>,
         along: impl FnOnce(&Contact) -> Vec3,
         margin: f32,
-        next: impl Fn(&Polygon<N>) -> Option<Contact>,
+        mut next: impl FnMut(&Polygon<N>) -> Option<Contact>,
     ) -> Self {
         let mut manifold = Self::EMPTY;
         if N == 0 {
             return manifold;
         }
-        let Some(deepest) = deepest() else {
+        let Some(deepest) = deepest else {
             return manifold;
         };
         let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
         manifold.push(deepest);
-        while manifold.len < N {
-            let mut picked = next(&polygon);
-            if picked.is_none() && polygon.least > -margin {
-                polygon.least = -margin;
-                picked = next(&polygon);
+        for weight in LEAST_WEIGHTS {
+            let least = least_deep(deepest.penetration, margin, weight);
+            if least == polygon.least {
+                continue;
             }
-            let Some(next) = picked else {
+            polygon.least = least;
+            while manifold.len < N {
+                let Some(next) = next(&polygon) else {
+                    break;
+                };
+                polygon.insert(next.position);
+                manifold.push(next);
+            }
+            if manifold.len >= STANDS_ON {
                 break;
-            };
-            polygon.insert(next.position);
-            manifold.push(next);
+            }
         }
         manifold
     }
@@ -103,8 +112,9 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// The manifold of the contact set, its area seen along the field's normal at the deepest
     /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
     ///
-    /// One search finds the deepest contact and those that count enough; should there be too many
-    /// to keep on the stack, or too few, each further contact is searched for by itself.
+    /// One search finds the deepest contact and those that count enough, and if these are too few a
+    /// second one those that count a little; should there be too many to keep on the stack, or too
+    /// few still, each further contact is searched for by itself.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
         // Most bodies of a scene are apart; for them not even a place to keep contacts is made.
         if !self.may_touch() {
@@ -114,7 +124,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         self.find_from_hint(&mut near);
         near.drop_shallow();
         ContactManifold::pick(
-            || near.deepest.found,
+            near.deepest.found,
             |deepest| {
                 let at = self.rotation * deepest.position + self.translation;
                 let inward = self.rotation.transpose() * self.field.inward_direction(at);
@@ -131,6 +141,13 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                     least: f32::MIN_POSITIVE,
                     found: None,
                 };
+                if polygon.least < near.least && polygon.least > -self.margin && !near.is_full {
+                    near.reach_down_to(polygon.least);
+                    dispatch(
+                        #[inline(always)]
+                        || self.search(TOP, &mut near),
+                    );
+                }
                 if near.is_full || polygon.least < near.least {
                     return self.find(spread).found;
                 }
@@ -212,6 +229,11 @@ impl Near {
         self.len += 1;
     }
 
+    /// Forgets what was kept, to be offered all contacts again, those less deep among them.
+    fn reach_down_to(&mut self, least: f32) {
+        (self.least, self.len) = (least, 0);
+    }
+
     /// Some may have been kept before a deeper one was known.
     #[inline(always)]
     fn drop_shallow(&mut self) {
@@ -241,7 +263,7 @@ impl Goal for Near {
             self.least = if self.is_full {
                 self.deepest.least
             } else {
-                least_deep(self.deepest.least, self.margin)
+                least_deep(self.deepest.least, self.margin, LEAST_WEIGHTS[0])
             };
         }
         if !self.is_full {
@@ -256,10 +278,10 @@ impl Goal for Near {
     }
 }
 
-/// From which penetration on contacts count enough beside the deepest.
-fn least_deep(deepest: f32, margin: f32) -> f32 {
+/// From which penetration on contacts count at least a part of what the deepest does.
+fn least_deep(deepest: f32, margin: f32, part: f32) -> f32 {
     let (outside, half) = ((-deepest).max(0.0), half_weight(margin));
-    let square = (outside * outside + half * half) / LEAST_WEIGHT - half * half;
+    let square = (outside * outside + half * half) / part - half * half;
     -f32x4::splat(square).sqrt().to_array()[0].min(margin)
 }
 
@@ -340,7 +362,7 @@ impl<const N: usize> Polygon<N> {
             len: 1,
             along,
             half: half_weight(margin),
-            least: least_deep(first.penetration, margin),
+            least: f32::NAN,
         }
     }
 
