@@ -11,12 +11,15 @@ use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
 /// At which fraction of the margin outside of the solid a contact counts half.
 const CLOSE: f32 = 0.01;
 
-/// Contacts that count less than such a part of what the deepest does are picked only when no others
-/// are left, and only until a body can stand on what was picked. Zero stands for the margin.
-const LEAST_WEIGHTS: [f32; 3] = [1.0 / 2.0, 1.0 / 256.0, 0.0];
+/// Contacts that count less than this part of what the deepest does are picked only when no others
+/// are left.
+const LEAST_WEIGHT: f32 = 1.0 / 2.0;
 
-/// On so many corners a body stands.
-const STANDS_ON: usize = 3;
+/// So many contacts hold a body whatever way it falls; no more are filled up.
+const STANDS_ON: usize = 4;
+
+/// Those that count this part of it or more are kept when such are needed.
+const KEPT_WEIGHT: f32 = 1.0 / 256.0;
 
 /// What a contact counts whose normal is square to that of the deepest.
 const ASKEW: f32 = 0.25;
@@ -27,10 +30,10 @@ const ASKEW: f32 = 0.25;
 /// What a point adds to the area counts less the further outside of the solid it is, half at a
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than half of what the deepest does are picked only if fewer than three others are there: what a
-/// body may fall on next. And it counts less the more its normal is askew, down to a quarter: points
-/// a little inside of an edge come before those on it, whose normals belong to neither side. Of
-/// equally good contacts the first is taken.
+/// than half of what the deepest does only fill up what places the others leave: a body may fall on
+/// them next. And it counts less the more its normal is askew, down to a quarter: points a little
+/// inside of an edge come before those on it, whose normals belong to neither side. Of equally good
+/// contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
@@ -77,22 +80,17 @@ impl<const N: usize> ContactManifold<N> {
         };
         let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
         manifold.push(deepest);
-        for weight in LEAST_WEIGHTS {
-            let least = least_deep(deepest.penetration, margin, weight);
-            if least == polygon.least {
-                continue;
+        while manifold.len < N {
+            let mut picked = next(&polygon);
+            if picked.is_none() && manifold.len < STANDS_ON && polygon.least > -margin {
+                polygon.least = -margin;
+                picked = next(&polygon);
             }
-            polygon.least = least;
-            while manifold.len < N {
-                let Some(next) = next(&polygon) else {
-                    break;
-                };
-                polygon.insert(next.position);
-                manifold.push(next);
-            }
-            if manifold.len >= STANDS_ON {
+            let Some(next) = picked else {
                 break;
-            }
+            };
+            polygon.insert(next.position);
+            manifold.push(next);
         }
         manifold
     }
@@ -113,8 +111,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
     ///
     /// One search finds the deepest contact and those that count enough, and if these are too few a
-    /// second one those that count a little; should there be too many to keep on the stack, or too
-    /// few still, each further contact is searched for by itself.
+    /// second one those that count a little; what counts less than them, or does not fit on the
+    /// stack, is searched for contact by contact, as far as it could be better.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
         // Most bodies of a scene are apart; for them not even a place to keep contacts is made.
         if !self.may_touch() {
@@ -136,26 +134,30 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             },
             self.margin,
             |polygon| {
-                let mut spread = Spread {
-                    polygon,
-                    least: f32::MIN_POSITIVE,
-                    found: None,
-                };
-                if polygon.least < near.least && polygon.least > -self.margin && !near.is_full {
-                    near.reach_down_to(polygon.least);
+                if polygon.least < near.least && !near.is_full && !near.has_reached {
+                    near.reach_down();
                     dispatch(
                         #[inline(always)]
                         || self.search(TOP, &mut near),
                     );
                 }
-                if near.is_full || polygon.least < near.least {
-                    return self.find(spread).found;
+                let mut spread = Spread {
+                    polygon,
+                    below: f32::INFINITY,
+                    least: f32::MIN_POSITIVE,
+                    found: None,
+                };
+                if !near.is_full {
+                    dispatch(
+                        #[inline(always)]
+                        || near.offer_to(self.tree, &mut spread),
+                    );
+                    if near.least <= polygon.least {
+                        return spread.found;
+                    }
+                    spread.below = near.least;
                 }
-                dispatch(
-                    #[inline(always)]
-                    || near.offer_to(self.tree, &mut spread),
-                );
-                spread.found
+                self.find(spread).found
             },
         )
     }
@@ -183,6 +185,8 @@ struct Near {
     kept: [Group; KEPT],
     len: usize,
     is_full: bool,
+    /// Whether those that count a little were asked for.
+    has_reached: bool,
 }
 
 impl Near {
@@ -199,6 +203,7 @@ impl Near {
             kept: [none; KEPT],
             len: 0,
             is_full: false,
+            has_reached: false,
         }
     }
 
@@ -229,9 +234,10 @@ impl Near {
         self.len += 1;
     }
 
-    /// Forgets what was kept, to be offered all contacts again, those less deep among them.
-    fn reach_down_to(&mut self, least: f32) {
-        (self.least, self.len) = (least, 0);
+    /// Forgets what was kept, to be offered all contacts again, also those that count a little.
+    fn reach_down(&mut self) {
+        self.least = least_deep(self.deepest.least, self.margin, KEPT_WEIGHT);
+        (self.len, self.has_reached) = (0, true);
     }
 
     /// Some may have been kept before a deeper one was known.
@@ -263,7 +269,7 @@ impl Goal for Near {
             self.least = if self.is_full {
                 self.deepest.least
             } else {
-                least_deep(self.deepest.least, self.margin, LEAST_WEIGHTS[0])
+                least_deep(self.deepest.least, self.margin, LEAST_WEIGHT)
             };
         }
         if !self.is_full {
@@ -293,6 +299,8 @@ fn half_weight(margin: f32) -> f32 {
 /// The contact that adds the most to a polygon.
 struct Spread<'p, const N: usize> {
     polygon: &'p Polygon<N>,
+    /// Contacts that are deeper have been considered.
+    below: f32,
     least: f32,
     found: Option<Contact>,
 }
@@ -302,7 +310,8 @@ impl<const N: usize> Goal for Spread<'_, N> {
 
     #[inline(always)]
     fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
-        self.polygon.bounds(discs, penetrations)
+        let left = penetrations.fast_min(f32x4::splat(self.below));
+        self.polygon.bounds(discs, left)
     }
 
     #[inline(always)]
@@ -362,7 +371,7 @@ impl<const N: usize> Polygon<N> {
             len: 1,
             along,
             half: half_weight(margin),
-            least: f32::NAN,
+            least: least_deep(first.penetration, margin, LEAST_WEIGHT),
         }
     }
 

@@ -82,6 +82,32 @@ pub(crate) fn spread<const N: usize>(contacts: &mut Vec<PairContact>, margin: f3
     *contacts = picked.map(|c| contacts[c.point as usize]).collect();
 }
 
+/// Most contacts of one normal: what rapier's solver takes of a manifold (and Bullet's, section 3.2).
+const MANIFOLD_SIZE: usize = 4;
+
+/// Contacts whose normals differ by less than 5 degrees share a manifold.
+const SAME_NORMAL: f32 = 0.996_2;
+
+/// Whether two normals are as good as one.
+pub(crate) fn is_same_normal(a: Vec3, b: Vec3) -> bool {
+    a.dot(b) > SAME_NORMAL
+}
+
+/// Keeps the first contacts of each normal. Where a body lies flat four hold it as well as eight; all
+/// around a thread or a tooth they do not.
+pub(crate) fn keep_few_of_a_normal(contacts: &mut Vec<PairContact>) {
+    let mut groups: Vec<(Vec3, usize)> = Vec::with_capacity(contacts.len());
+    contacts.retain(|contact| {
+        let normal = contact.normals[0];
+        let Some((_, count)) = groups.iter_mut().find(|(n, _)| is_same_normal(*n, normal)) else {
+            groups.push((normal, 1));
+            return true;
+        };
+        *count += 1;
+        *count <= MANIFOLD_SIZE
+    });
+}
+
 /// The largest penetration in metres, minus infinity of none.
 pub(crate) fn deepest(contacts: &[PairContact]) -> f32 {
     let depths = contacts.iter().map(|c| c.penetration);

@@ -4,12 +4,9 @@ use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use vps_core::{Pose3, Vec3};
 
 use crate::Manifolds;
-use crate::contact::PairContact;
+use crate::contact::{PairContact, is_same_normal};
 use crate::pair::Pair;
 use crate::real::{core_vector, real, vector};
-
-/// Contacts whose normals differ by less than 5 degrees share a manifold.
-const SAME_NORMAL: f32 = 0.996_2;
 
 /// Finds the contacts of a pair up to `prediction` metres away and replaces its manifolds by them.
 /// What the engine remembers of a contact stays with the same ids, and of a manifold with its place.
@@ -47,7 +44,7 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
 }
 
 fn fits<M, C>(manifold: &ContactManifold<M, C>, normal: Vec3) -> bool {
-    core_vector(manifold.local_n1).dot(normal) > SAME_NORMAL
+    is_same_normal(core_vector(manifold.local_n1), normal)
 }
 
 fn tracked<C: Default + Copy>(contact: &PairContact, data: Option<C>) -> TrackedContact<C> {

@@ -4,10 +4,11 @@ use rapier3d::parry::shape::{PackedFeatureId, Shape};
 use vps_core::{Pose3, Vec3};
 
 use crate::contact::{
-    PairContact, are_opposed, deepest, is_as_good, settle_normals, spread, turn_all,
+    PairContact, are_opposed, deepest, is_as_good, keep_few_of_a_normal, settle_normals, spread,
+    turn_all,
 };
 use crate::probe::Probe;
-use crate::way::{MANIFOLD_SIZE, Way};
+use crate::way::{SPREAD_SIZE, Way};
 use crate::{Manifolds, Role, Sampling, VpsShape};
 
 /// All ways to look at a pair that are needed for it.
@@ -123,20 +124,24 @@ impl<'s> Pair<'s> {
         let has_more = found.len() > by_shells || self.ways[1].is_some();
         match manifolds {
             Manifolds::Spread => {
-                let kept = self.again(pos12, before, &found);
+                let mut kept = self.again(pos12, before, &found);
                 if has_more {
-                    spread::<MANIFOLD_SIZE>(&mut found, margin);
+                    spread::<SPREAD_SIZE>(&mut found, margin);
+                }
+                for contacts in kept.iter_mut().chain([&mut found]) {
+                    settle_normals(contacts, pos12);
+                    keep_few_of_a_normal(contacts);
                 }
                 if let Some(kept) = kept
                     && is_as_good(&kept, &found, STILL * self.size())
                 {
                     found = kept;
                 }
-                self.settle(&mut found, pos12);
+                self.push_out_of_the_deep(&mut found, pos12);
             }
             Manifolds::Segments(_) if found.len() > by_shells => {
                 let mut probed = found.split_off(by_shells);
-                spread::<MANIFOLD_SIZE>(&mut probed, margin);
+                spread::<SPREAD_SIZE>(&mut probed, margin);
                 found.extend(probed);
             }
             _ => {}
@@ -144,9 +149,8 @@ impl<'s> Pair<'s> {
         found
     }
 
-    /// Lets contacts of one pair pull together, as far as they should.
-    fn settle(&self, contacts: &mut Vec<PairContact>, pos12: &Pose3) {
-        settle_normals(contacts, pos12);
+    /// Lets contacts of one pair pull together where what is closest is not the way out.
+    fn push_out_of_the_deep(&self, contacts: &mut Vec<PairContact>, pos12: &Pose3) {
         if deepest(contacts) > DEEP * self.size() && are_opposed(contacts) {
             let push = self
                 .ways()

@@ -10,8 +10,8 @@ use crate::contact::PairContact;
 use crate::real::{core_real, core_vector};
 use crate::{Sampling, ShapeField, VpsShape};
 
-/// Most contacts of a manifold: what rapier's solver takes of one (and Bullet's, section 3.2).
-pub(crate) const MANIFOLD_SIZE: usize = 4;
+/// Most contacts of a pair in both directions of looking at it.
+pub(crate) const SPREAD_SIZE: usize = 8;
 
 /// A pointshell in a field.
 pub(crate) struct Way<'s> {
@@ -126,7 +126,7 @@ impl<'s> Way<'s> {
                 _ => None,
             }
         });
-        let manifold: ContactManifold<MANIFOLD_SIZE> = with_field!(self, field => {
+        let manifold: ContactManifold<SPREAD_SIZE> = with_field!(self, field => {
             let query = Query::new(self.tree, field, pose).with_margin(margin);
             hint.map_or(query, |point| query.with_hint(point)).manifold()
         });
