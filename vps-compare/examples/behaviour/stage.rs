@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use rapier3d::prelude::*;
 use vps_core::{Body, BodyPair, Query, Shells};
 
+use crate::kept::Kept;
 use crate::models::{Kind, Model};
 
 /// Friction and restitution of all bodies of a scene.
@@ -38,6 +39,8 @@ pub(crate) struct Stage {
     limit: Duration,
     /// The deepest any body has been in another, in metres.
     pub(crate) deepest_m: f32,
+    /// How many contacts were known again.
+    pub(crate) kept: Kept,
 }
 
 /// How still bodies are that should be at rest.
@@ -72,6 +75,7 @@ impl Stage {
             stepping: Duration::ZERO,
             limit: Duration::from_secs(12),
             deepest_m: 0.0,
+            kept: Kept::default(),
         }
     }
 
@@ -138,6 +142,7 @@ impl Stage {
             self.world.step();
             self.stepping += start.elapsed();
             self.steps += 1;
+            self.kept.follow(&self.world);
             if self.steps.is_multiple_of(LOOK_EVERY) {
                 self.deepest_m = self.deepest_m.max(self.depth());
             }
