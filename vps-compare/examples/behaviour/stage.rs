@@ -2,11 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
 use vps_core::{Body, BodyPair, Query, Shells};
+use vps_rapier::{Manifolds, VpsDispatcher};
 
 use crate::kept::Kept;
-use crate::models::{Kind, Model};
+use crate::models::{Kind, Model, SEGMENTS_LEVEL};
 
 /// Friction and restitution of all bodies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +62,16 @@ impl Stage {
         let mut world = PhysicsWorld::default();
         if kind.is_vps() {
             world.narrow_phase = vps_rapier::narrow_phase();
+        }
+        if kind == Kind::VpsSegments {
+            let dispatcher = VpsDispatcher {
+                manifolds: Manifolds::Segments(SEGMENTS_LEVEL),
+                ..VpsDispatcher::default()
+            };
+            let dispatcher = dispatcher.chain(DefaultQueryDispatcher);
+            world.narrow_phase = NarrowPhase::with_query_dispatcher(dispatcher);
+            // It would join them again.
+            world.integration_parameters.contact_clustering = false;
         }
         let parameters = &mut world.integration_parameters;
         parameters.dt = 1.0 / frequency_hz;
