@@ -79,8 +79,8 @@ fn report(rows: &[Row]) -> String {
          that bore something in a step, of pairs that did in the step before, the share that rapier did\n\
          not take for new, clusters of contacts where it joins them. It is a new one that comes where\n\
          another was, and one that bore nothing for a step; which one is the same the dispatchers say\n\
-         themselves: parry by features and places, VPS by points of the shell, and of those left over\n\
-         by the closest with much the same normal. Where bodies should be at rest,\n\
+         themselves: parry by features and places, VPS by points of the shell (or segments), and of those\n\
+         left over by the closest with much the same normal. Where bodies should be at rest,\n\
          *drift* is how far a centre got in the last second, *speed* what no part was faster than\n\
          in it, and *energy* the most of all bodies together. Steps a second count stepping alone;\n\
          slow ones are stopped after 12 s of it (30 s for the bolt, 20 s for the stack of bunnies, 60 s\n\

@@ -43,7 +43,7 @@ pub(crate) const ALL_KINDS: [Kind; 5] = [
     Kind::Trimesh,
 ];
 /// Level of the segments, the top being 1.
-pub(crate) const SEGMENTS_LEVEL: u32 = 2;
+pub(crate) const SEGMENTS_LEVEL: u32 = 3;
 /// The kinds a bunny has.
 pub(crate) const BUNNY_KINDS: [Kind; 4] = [
     Kind::VpsCoarse,
