@@ -1,66 +1,232 @@
 //! When two moving shapes meet.
 
-use rapier3d::math::{Pose, Real};
+use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{ShapeCastHit, ShapeCastStatus};
+use rapier3d::parry::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
+use vps_core::{Pose3, Vec3};
 
+use crate::contact::PairContact;
 use crate::pair::Pair;
-use crate::real::{core_pose, core_real, real, vector};
+use crate::real::{core_pose, core_real, core_vector, real, vector};
 
 /// Advances of a shape cast before it gives up.
-const CAST_STEPS: usize = 64;
+const CAST_STEPS: usize = 512;
+
+/// Halvings of the time between an advance too far and the one before.
+const HALVINGS: usize = 24;
+
+/// What approaches at less than this share of the speed passes by.
+const GRAZING: f32 = 1e-3;
+
+/// How alike the normals of contacts are, as a cosine, that are of one surface.
+const ALIKE: f32 = 0.9;
+
+/// How two shapes move.
+pub(crate) trait Motion {
+    /// The pose of the second shape in the frame of the first.
+    fn pose12(&self, time: Real) -> Pose;
+
+    /// How fast the second shape moves relative to the first, at a point; both in the frame of the
+    /// first.
+    fn velocity12(&self, time: Real, point1: Vector) -> Vector;
+
+    /// No two points of the shapes come closer to each other faster than this.
+    fn closing_speed(&self) -> Real;
+}
+
+/// The second shape moves without turning.
+pub(crate) struct Linear {
+    pub(crate) start: Pose,
+    pub(crate) velocity: Vector,
+}
+
+impl Motion for Linear {
+    fn pose12(&self, time: Real) -> Pose {
+        self.start.append_translation(self.velocity * time)
+    }
+
+    fn velocity12(&self, _time: Real, _point1: Vector) -> Vector {
+        self.velocity
+    }
+
+    fn closing_speed(&self) -> Real {
+        self.velocity.length()
+    }
+}
+
+/// Both shapes move and turn in a world.
+pub(crate) struct Turning<'m> {
+    pub(crate) motions: [&'m NonlinearRigidMotion; 2],
+    pub(crate) closing_speed: Real,
+}
+
+impl Motion for Turning<'_> {
+    fn pose12(&self, time: Real) -> Pose {
+        let [pos1, pos2] = self.motions.map(|m| m.position_at_time(time));
+        pos1.inv_mul(&pos2)
+    }
+
+    fn velocity12(&self, time: Real, point1: Vector) -> Vector {
+        let pos1 = self.motions[0].position_at_time(time);
+        let point = pos1 * point1;
+        let [velocity1, velocity2] = self.motions.map(|m| {
+            let center = m.position_at_time(time) * m.local_center;
+            m.linvel + m.angvel.cross(point - center)
+        });
+        pos1.rotation.inverse() * (velocity2 - velocity1)
+    }
+
+    fn closing_speed(&self) -> Real {
+        self.closing_speed
+    }
+}
 
 /// Conservative advancement: as long as the shapes are apart, neither can meet the other sooner
 /// than their distance divided by their closing speed. From afar what a distance may be off is taken
-/// from it; close by, where that is more than the distance, half of it.
+/// from it; close by, where that is more than the distance, half of it. Shapes that cannot meet in
+/// time are not looked at closer than that.
 ///
-/// Shapes that cannot meet in time are not looked at closer than that.
+/// A shape that passes close by another, as a body that slides on its ground does, has no way to go
+/// by that measure: it goes half a voxel at a time, and back to when it met something if it did.
+///
+/// Unless it stops at penetration, what is within the target distance already is only met if it comes
+/// closer.
 pub(crate) fn cast(
     pair: &Pair<'_>,
-    pose_at: impl Fn(Real) -> Pose,
-    closing_speed: Real,
+    motion: &impl Motion,
     start_time: Real,
     options: ShapeCastOptions,
 ) -> Option<ShapeCastHit> {
-    let (near, error) = (real(4.0 * pair.resolution()), real(pair.error()));
-    let tolerance = real(1e-4 * pair.size());
-    let (target, end_time) = (options.target_distance, options.max_time_of_impact);
-    if !options.stop_at_penetration && pair.touches(&core_pose(&pose_at(start_time))) {
-        return None;
-    }
-    // What is further away is not met; the deepest is, should there be anything.
-    let closest = |time: Real| {
-        let way = closing_speed * (end_time - time).max(0.0);
-        let within = core_real(target + way + error + tolerance);
-        pair.deepest(&core_pose(&pose_at(time)), within)
+    let cast = Cast {
+        pair,
+        motion,
+        target: options.target_distance,
+        tolerance: real(1e-4 * pair.size()),
+        meets_all: options.stop_at_penetration,
     };
-    let mut time = start_time;
-    let mut status = ShapeCastStatus::OutOfIterations;
-    let mut closest_now = closest(time)?;
-    if real(-closest_now.penetration) <= target {
-        if !options.stop_at_penetration {
-            return None;
-        }
-        status = ShapeCastStatus::PenetratingOrWithinTargetDist;
-    } else {
+    cast.run(start_time, options.max_time_of_impact)
+}
+
+struct Cast<'c, 's, M> {
+    pair: &'c Pair<'s>,
+    motion: &'c M,
+    target: Real,
+    tolerance: Real,
+    /// Also what does not come closer.
+    meets_all: bool,
+}
+
+impl<M: Motion> Cast<'_, '_, M> {
+    fn run(&self, start_time: Real, end_time: Real) -> Option<ShapeCastHit> {
+        let (near, error) = (real(4.0 * self.pair.resolution()), real(self.pair.error()));
+        let stride = (0.125 * near).max(0.5 * self.target).max(self.tolerance);
+        let speed = self.motion.closing_speed();
+        let (mut time, mut before) = (start_time, start_time);
         for _ in 0..CAST_STEPS {
-            let free = real(-closest_now.penetration) - target;
-            if free <= tolerance {
-                status = ShapeCastStatus::Converged;
-                break;
+            let way = speed * (end_time - time).max(0.0);
+            // What is further away is not met; the deepest is, should there be anything.
+            let closest = self.closest(time, way + error)?;
+            let free = self.free(&closest);
+            if free <= self.tolerance
+                && let Some(contact) = self.met(time)
+            {
+                let (time, contact) = self.first_met([before, time], contact);
+                let is_start = time == start_time && self.free(&contact) <= 0.0;
+                let status = if is_start {
+                    ShapeCastStatus::PenetratingOrWithinTargetDist
+                } else {
+                    ShapeCastStatus::Converged
+                };
+                return Some(hit(time, &contact, status));
             }
-            time += (free - error).max(0.5 * free.min(near)) / closing_speed;
+            before = time;
+            let is_ahead = free > self.tolerance && self.approaches(time, &closest);
+            if free > stride || is_ahead {
+                time += (free - error).max(0.5 * free.min(near)) / speed;
+            } else if time < end_time {
+                time = (time + stride / speed).min(end_time);
+            } else {
+                return None;
+            }
             // Also when nothing moves.
             let in_time = time <= end_time;
             if !in_time {
                 return None;
             }
-            closest_now = closest(time)?;
         }
+        let closest = self.closest(time, Real::INFINITY)?;
+        Some(hit(time, &closest, ShapeCastStatus::OutOfIterations))
     }
-    let [witness1, witness2] = closest_now.points.map(vector);
-    let [normal1, normal2] = closest_now.normals.map(vector);
-    Some(ShapeCastHit {
+
+    fn pose12(&self, time: Real) -> Pose3 {
+        core_pose(&self.motion.pose12(time))
+    }
+
+    /// The deepest contact up to a way beyond the target distance.
+    fn closest(&self, time: Real, way: Real) -> Option<PairContact> {
+        let within = core_real(self.target + way + self.tolerance);
+        self.pair.deepest(&self.pose12(time), within)
+    }
+
+    /// The deepest contact by which the shapes meet at a time, if they do. Round what is deepest there
+    /// are others much like it, which tell nothing that it does not; elsewhere may be a wall, which
+    /// field and shell agree about.
+    fn met(&self, time: Real) -> Option<PairContact> {
+        let deepest = self.closest(time, 0.0)?;
+        if self.meets_all || self.approaches(time, &deepest) {
+            return Some(deepest);
+        }
+        let is_other = |contact: &PairContact| {
+            let by_shell = contact.by_shell.unwrap_or(contact.normals[0]);
+            contact.normals[0].dot(deepest.normals[0]) < ALIKE
+                && self.closes(time, contact, contact.normals[0])
+                && self.closes(time, contact, by_shell)
+        };
+        let within = core_real(self.target + self.tolerance);
+        self.pair.deepest_of(&self.pose12(time), within, &is_other)
+    }
+
+    fn free(&self, contact: &PairContact) -> Real {
+        real(-contact.penetration) - self.target
+    }
+
+    fn approaches(&self, time: Real, contact: &PairContact) -> bool {
+        self.closes(time, contact, contact.normals[0])
+    }
+
+    /// Whether the shapes come closer to each other at a contact, along a normal out of the first.
+    fn closes(&self, time: Real, contact: &PairContact, normal: Vec3) -> bool {
+        let velocity = self.motion.velocity12(time, vector(contact.points[0]));
+        let speed = core_real(self.motion.closing_speed());
+        core_vector(velocity).dot(normal) < -GRAZING * speed
+    }
+
+    /// The time something was met first, between one when nothing was and one when `contact` was.
+    fn first_met(
+        &self,
+        [mut before, mut time]: [Real; 2],
+        mut contact: PairContact,
+    ) -> (Real, PairContact) {
+        for _ in 0..HALVINGS {
+            let is_close = self.free(&contact) >= -self.tolerance;
+            let way = self.motion.closing_speed() * (time - before);
+            if is_close || way <= self.tolerance {
+                break;
+            }
+            let middle = before + 0.5 * (time - before);
+            match self.met(middle) {
+                Some(earlier) => (time, contact) = (middle, earlier),
+                None => before = middle,
+            }
+        }
+        (time, contact)
+    }
+}
+
+fn hit(time: Real, contact: &PairContact, status: ShapeCastStatus) -> ShapeCastHit {
+    let [witness1, witness2] = contact.points.map(vector);
+    let [normal1, normal2] = contact.normals.map(|n| vector(without_noise(n)));
+    ShapeCastHit {
         time_of_impact: time,
         witness1,
         witness2,
@@ -69,5 +235,15 @@ pub(crate) fn cast(
         status,
         subshape1: 0,
         subshape2: 0,
-    })
+    }
 }
+
+/// A normal along an axis but for rounding: rapier's character controller takes even that for a slope
+/// to slip down, and stops.
+fn without_noise(normal: Vec3) -> Vec3 {
+    let is_noise = normal.abs().cmplt(Vec3::splat(NOISE));
+    Vec3::select(is_noise, Vec3::ZERO, normal).normalize()
+}
+
+/// What components of normals may be off by rounding.
+const NOISE: f32 = 1e-5;

@@ -14,7 +14,7 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Compound, Shape};
 
-use crate::cast::cast;
+use crate::cast::{Linear, Turning, cast};
 use crate::compound::{compound_of_vps, update_parts};
 use crate::contact::PairContact;
 use crate::manifolds::update_manifolds;
@@ -179,8 +179,11 @@ impl QueryDispatcher for VpsDispatcher {
         let all = self.with_parry();
         Ok(match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let pose_at = |time| pos12.append_translation(local_vel12 * time);
-                cast(&pair, pose_at, local_vel12.length(), 0.0, options)
+                let motion = Linear {
+                    start: *pos12,
+                    velocity: local_vel12,
+                };
+                cast(&pair, &motion, 0.0, options)
             }
             Task::PartsOfFirst(parts) => {
                 cast_shapes_composite_shape_shape(&all, pos12, local_vel12, parts, g2, options)
@@ -205,17 +208,16 @@ impl QueryDispatcher for VpsDispatcher {
         let stop = stop_at_penetration;
         Ok(match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let pose_at = |time| {
-                    let [pos1, pos2] = [motion1, motion2].map(|m| m.position_at_time(time));
-                    pos1.inv_mul(&pos2)
+                let motion = Turning {
+                    motions: [motion1, motion2],
+                    closing_speed: top_speed(motion1, g1) + top_speed(motion2, g2),
                 };
-                let closing_speed = top_speed(motion1, g1) + top_speed(motion2, g2);
                 let options = ShapeCastOptions {
                     max_time_of_impact: end_time,
                     stop_at_penetration,
                     ..ShapeCastOptions::default()
                 };
-                cast(&pair, pose_at, closing_speed, start_time, options)
+                cast(&pair, &motion, start_time, options)
             }
             Task::PartsOfFirst(parts) => cast_shapes_nonlinear_composite_shape_shape(
                 &all, motion1, parts, motion2, g2, start_time, end_time, stop,

@@ -87,9 +87,6 @@ impl<'s> Pair<'s> {
 
     /// The deepest contact up to `margin` metres away.
     pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
-        let deeper = |a: PairContact, b: PairContact| {
-            if b.penetration > a.penetration { b } else { a }
-        };
         let by_shells = self.ways().filter_map(|way| way.deepest(pos12, margin));
         let deepest = by_shells.reduce(deeper);
         let mut probed = Vec::new();
@@ -99,6 +96,25 @@ impl<'s> Pair<'s> {
             probe.contacts(pos12, least, &mut probed);
         }
         deepest.into_iter().chain(probed).reduce(deeper)
+    }
+
+    /// The deepest of all contacts up to `margin` metres away of which something is true. Looks at
+    /// them all.
+    pub(crate) fn deepest_of(
+        &self,
+        pos12: &Pose3,
+        margin: f32,
+        is_wanted: &dyn Fn(&PairContact) -> bool,
+    ) -> Option<PairContact> {
+        let mut probed = Vec::new();
+        if let Some(probe) = &self.probe {
+            probe.contacts(pos12, margin, &mut probed);
+        }
+        let by_shells = self
+            .ways()
+            .filter_map(|way| way.deepest_of(pos12, margin, is_wanted));
+        let deepest = by_shells.chain(probed.into_iter().filter(is_wanted));
+        deepest.reduce(deeper)
     }
 
     /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of those of
@@ -193,4 +209,8 @@ impl<'s> Pair<'s> {
         let of_probe = self.probe.as_ref().map_or(0.0, Probe::error);
         self.ways().map(Way::error).fold(of_probe, f32::max)
     }
+}
+
+fn deeper(a: PairContact, b: PairContact) -> PairContact {
+    if b.penetration > a.penetration { b } else { a }
 }

@@ -109,6 +109,30 @@ impl<'s> Way<'s> {
         })
     }
 
+    /// The deepest of all contacts up to `margin` metres away of which something is true.
+    pub(crate) fn deepest_of(
+        &self,
+        pos12: &Pose3,
+        margin: f32,
+        is_wanted: &dyn Fn(&PairContact) -> bool,
+    ) -> Option<PairContact> {
+        let pose = self.shell_to_field(pos12);
+        let mut deepest: Option<PairContact> = None;
+        let visit = |contact: Contact| {
+            if deepest.is_some_and(|d| d.penetration >= contact.penetration) {
+                return;
+            }
+            let contact = self.on_surfaces(&pose, &contact);
+            if is_wanted(&contact) {
+                deepest = Some(contact);
+            }
+        };
+        with_field!(self, field => {
+            Query::new(self.tree, field, pose).with_margin(margin).for_each_contact(visit);
+        });
+        deepest
+    }
+
     /// The deepest contact first, then those that spread over the largest area; found faster if the
     /// first of the step before is deep still.
     pub(crate) fn manifold(

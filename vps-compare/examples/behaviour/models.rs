@@ -17,6 +17,8 @@ pub(crate) enum Kind {
     VpsCoarse,
     /// VPS.
     Vps,
+    /// VPS with a contact for each segment of a level of the shell's tree.
+    VpsSegments,
     /// Convex parts by VHACD.
     Decomposition,
     /// A triangle mesh of parry.
@@ -25,6 +27,23 @@ pub(crate) enum Kind {
 
 /// All kinds that every model has.
 pub(crate) const KINDS: [Kind; 3] = [Kind::Vps, Kind::Decomposition, Kind::Trimesh];
+/// The same, and VPS by segments.
+pub(crate) const KINDS_AND_SEGMENTS: [Kind; 4] = [
+    Kind::Vps,
+    Kind::VpsSegments,
+    Kind::Decomposition,
+    Kind::Trimesh,
+];
+/// All kinds.
+pub(crate) const ALL_KINDS: [Kind; 5] = [
+    Kind::VpsCoarse,
+    Kind::Vps,
+    Kind::VpsSegments,
+    Kind::Decomposition,
+    Kind::Trimesh,
+];
+/// Level of the segments, the top being 1.
+pub(crate) const SEGMENTS_LEVEL: u32 = 3;
 /// The kinds a bunny has.
 pub(crate) const BUNNY_KINDS: [Kind; 4] = [
     Kind::VpsCoarse,
@@ -38,13 +57,14 @@ impl Kind {
         match self {
             Self::VpsCoarse => "VPS, coarse",
             Self::Vps => "VPS",
+            Self::VpsSegments => "VPS, segments",
             Self::Decomposition => "convex decomposition",
             Self::Trimesh => "triangle mesh",
         }
     }
 
     pub(crate) fn is_vps(self) -> bool {
-        matches!(self, Self::VpsCoarse | Self::Vps)
+        matches!(self, Self::VpsCoarse | Self::Vps | Self::VpsSegments)
     }
 }
 
@@ -111,7 +131,7 @@ impl Model {
                 let coarse = self.coarse.as_ref().expect("a model with a coarse shell");
                 VpsShape::new(coarse.clone()).into()
             }
-            Kind::Vps => VpsShape::new(self.asset.clone()).into(),
+            Kind::Vps | Kind::VpsSegments => VpsShape::new(self.asset.clone()).into(),
             Kind::Decomposition => self.decomposition.clone(),
             Kind::Trimesh => self.trimesh.clone(),
         }

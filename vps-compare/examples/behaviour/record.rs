@@ -14,6 +14,8 @@ pub(crate) struct Row {
     is_complete: bool,
     steps_per_s: f64,
     deepest_m: f32,
+    /// The share of contacts that were known again.
+    kept: Option<f64>,
     rest: Option<Rest>,
     finding: Finding,
 }
@@ -32,7 +34,7 @@ pub(crate) struct Finding {
 
 /// The columns of `behaviour.csv`.
 pub(crate) const COLUMNS: &str = "scene,algorithm,frequency_hz,steps,complete,steps_per_s,\
-     deepest_mm,drift_mm,speed_mm_s,energy_mj,what,value,passed";
+     deepest_mm,kept_percent,drift_mm,speed_mm_s,energy_mj,what,value,passed";
 
 impl Row {
     /// Of a scene that was played.
@@ -50,6 +52,7 @@ impl Row {
             is_complete: stage.is_complete,
             steps_per_s: stage.steps_per_s(),
             deepest_m: stage.deepest_m,
+            kept: stage.kept.share(),
             rest,
             finding,
         }
@@ -65,6 +68,7 @@ impl Row {
             is_complete: false,
             steps_per_s: 0.0,
             deepest_m: 0.0,
+            kept: None,
             rest: None,
             finding: Finding {
                 what,
@@ -96,7 +100,7 @@ impl Row {
         let rest =
             |of: fn(&Rest) -> f32| number(self.rest.as_ref().map(|r| f64::from(of(r)) * 1e3));
         format!(
-            "{},\"{}\",{:.0},{},{},{:.3},{:.4},{},{},{},\"{}\",{},{}",
+            "{},\"{}\",{:.0},{},{},{:.3},{:.4},{},{},{},{},\"{}\",{},{}",
             self.scene,
             self.algorithm,
             self.frequency_hz,
@@ -104,6 +108,7 @@ impl Row {
             self.is_complete,
             self.steps_per_s,
             self.deepest_m * 1e3,
+            number(self.kept.map(|share| 100.0 * share)),
             rest(|r| r.drift_m),
             rest(|r| r.speed_m_s),
             rest(|r| r.energy_j),
@@ -117,10 +122,16 @@ impl Row {
     pub(crate) fn markdown(&self) -> String {
         let mut line = format!("| {} | ", self.algorithm);
         match self.steps {
-            0 => line += "| | ",
+            0 => line += "| | | ",
             _ => {
                 let steps_per_s = speed(self.steps_per_s);
-                let _ = write!(line, "{steps_per_s} | {:.2} | ", self.deepest_m * 1e3);
+                let kept = self.kept.map(|share| format!("{:.1}", 100.0 * share));
+                let kept = kept.unwrap_or_default();
+                let _ = write!(
+                    line,
+                    "{steps_per_s} | {:.2} | {kept} | ",
+                    self.deepest_m * 1e3
+                );
             }
         }
         match &self.rest {

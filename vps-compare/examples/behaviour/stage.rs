@@ -2,10 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
 use vps_core::{Body, BodyPair, Query, Shells};
+use vps_rapier::{Manifolds, VpsDispatcher};
 
-use crate::models::{Kind, Model};
+use crate::kept::Kept;
+use crate::models::{Kind, Model, SEGMENTS_LEVEL};
 
 /// Friction and restitution of all bodies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +41,8 @@ pub(crate) struct Stage {
     limit: Duration,
     /// The deepest any body has been in another, in metres.
     pub(crate) deepest_m: f32,
+    /// How many contacts were known again.
+    pub(crate) kept: Kept,
 }
 
 /// How still bodies are that should be at rest.
@@ -58,6 +63,16 @@ impl Stage {
         if kind.is_vps() {
             world.narrow_phase = vps_rapier::narrow_phase();
         }
+        if kind == Kind::VpsSegments {
+            let dispatcher = VpsDispatcher {
+                manifolds: Manifolds::Segments(SEGMENTS_LEVEL),
+                ..VpsDispatcher::default()
+            };
+            let dispatcher = dispatcher.chain(DefaultQueryDispatcher);
+            world.narrow_phase = NarrowPhase::with_query_dispatcher(dispatcher);
+            // It would join them again.
+            world.integration_parameters.contact_clustering = false;
+        }
         let parameters = &mut world.integration_parameters;
         parameters.dt = 1.0 / frequency_hz;
         parameters.contact_recycling = false;
@@ -72,6 +87,7 @@ impl Stage {
             stepping: Duration::ZERO,
             limit: Duration::from_secs(12),
             deepest_m: 0.0,
+            kept: Kept::default(),
         }
     }
 
@@ -138,6 +154,7 @@ impl Stage {
             self.world.step();
             self.stepping += start.elapsed();
             self.steps += 1;
+            self.kept.follow(&self.world);
             if self.steps.is_multiple_of(LOOK_EVERY) {
                 self.deepest_m = self.deepest_m.max(self.depth());
             }

@@ -16,7 +16,7 @@ mod thin;
 
 use rapier3d::prelude::*;
 
-use crate::models::{BUNNY_KINDS, KINDS, Kind};
+use crate::models::{ALL_KINDS, BUNNY_KINDS, KINDS, KINDS_AND_SEGMENTS, Kind};
 use crate::record::Row;
 
 /// Scenes in which triangle meshes may take longer than anyone waits for a step.
@@ -36,7 +36,7 @@ pub(crate) const SCENES: [Scene; 16] = [
     Scene {
         name: "rest",
         about: rest::ABOUT,
-        kinds: &BUNNY_KINDS,
+        kinds: &ALL_KINDS,
         play: rest::play,
     },
     Scene {
@@ -60,25 +60,25 @@ pub(crate) const SCENES: [Scene; 16] = [
     Scene {
         name: "roll smoothly",
         about: roll::SMOOTHLY,
-        kinds: &KINDS,
+        kinds: &KINDS_AND_SEGMENTS,
         play: roll::smoothly,
     },
     Scene {
         name: "roll on",
         about: roll::ON,
-        kinds: &KINDS,
+        kinds: &KINDS_AND_SEGMENTS,
         play: roll::on,
     },
     Scene {
         name: "stack of gears",
         about: stack::GEARS,
-        kinds: &KINDS,
+        kinds: &KINDS_AND_SEGMENTS,
         play: stack::gears,
     },
     Scene {
         name: "stack of bunnies",
         about: stack::BUNNIES,
-        kinds: &BUNNY_KINDS,
+        kinds: &ALL_KINDS,
         play: stack::bunnies,
     },
     Scene {

@@ -1,0 +1,110 @@
+//! A haptic loop of 1 kHz: a peg on a device, here a scripted one, goes into a ring and is pressed
+//! against its inside, all around. `cargo run --release --example haptic_loop -- 2`, for 2 seconds.
+
+use std::error::Error;
+use std::f32::consts::TAU;
+use std::hint::{black_box, spin_loop};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use vps_rapier::vps_build::{BuildOptions, Mesh, PointCount, models};
+use vps_rapier::vps_core::{
+    CouplingOptions, Pose3, Quat, Query, Tool, Vec3, VirtualCoupling, Weight, Wrench,
+};
+use vps_rapier::{VpsShape, VpsShapeBuilder};
+
+/// Time of a cycle.
+const PERIOD: Duration = Duration::from_millis(1);
+/// The same in seconds.
+const DT: f32 = 1e-3;
+/// A system may wake a thread this much too late: before a deadline the loop does not sleep.
+const AWAKE: Duration = Duration::from_micros(200);
+/// Of the contacts, in N for each m² that is a metre deep.
+const CONTACT_STIFFNESS: f32 = 1e9;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let seconds: u32 = match std::env::args().nth(1) {
+        Some(seconds) => seconds.parse()?,
+        None => 2,
+    };
+    // What is moved is the shell, what it touches the voxelmap. Both are along the z axis.
+    let peg = shape(models::peg(48).scaled(0.08)?, 3000)?;
+    let ring = shape(models::torus(48).scaled(0.08)?, 1000)?;
+    let (tree, field) = (&peg.asset().tree, ring.asset().voxelmap.trilinear());
+
+    // A light tool is felt less than a true one; 1000 N/m and 2 N m/rad are what desktop devices bear.
+    let tool = Tool::of(&peg.asset().mass, 0.05);
+    let options = CouplingOptions::critically_damped(&tool, 1000.0, 2.0);
+    let mut coupling = VirtualCoupling::new(tool, options, device(0.0))?;
+
+    let (mut max_force_n, mut touching, mut missed) = (0.0_f32, 0, 0);
+    let (mut longest, mut latest) = (Duration::ZERO, Duration::ZERO);
+    let cycles = seconds * 1000;
+    let start = Instant::now() + PERIOD;
+    for cycle in 0..cycles {
+        let due = start + cycle * PERIOD;
+        wait_until(due);
+        let began = Instant::now();
+
+        let device = device(cycle as f32 * DT);
+        // The ring's frame is the world; of another, `ring_pose.inv_mul(&pose)`, and the wrench
+        // is turned by the rotation of `pose` all the same.
+        let pose = coupling.pose();
+        let contact = Query::new(tree, &field, pose).linear_wrench(tool.center, Weight::Area);
+        let contact = (contact * CONTACT_STIFFNESS).rotated(pose.rotation);
+        touching += u32::from(contact.wrench.force != Vec3::ZERO);
+        // What is not finite is refused: the device keeps the last good wrench.
+        let wrench = match coupling.step(device, contact, DT) {
+            Ok(wrench) => wrench,
+            Err(_) => coupling.rendered(),
+        };
+        exert(wrench);
+
+        (longest, latest) = (longest.max(began.elapsed()), latest.max(began - due));
+        missed += u32::from(Instant::now() > due + PERIOD);
+        max_force_n = max_force_n.max(wrench.force.length());
+    }
+    println!("{cycles} cycles, the peg touching the ring in {touching}");
+    println!("largest force: {max_force_n:.2} N");
+    println!("longest cycle: {} µs", longest.as_micros());
+    println!(
+        "missed deadlines: {missed}; the system was up to {} µs late",
+        latest.as_micros()
+    );
+    Ok(())
+}
+
+/// A shape of about so many points.
+fn shape(mesh: Mesh, points: u32) -> Result<VpsShape, Box<dyn Error>> {
+    let options = BuildOptions {
+        points: PointCount::About(points),
+        ..BuildOptions::default()
+    };
+    Ok(VpsShapeBuilder::new(mesh).options(options).build()?)
+}
+
+/// Where the user wants the peg to be: from below into the ring, and then around in it, 4 mm further
+/// aside than there is room, and tilted. A true device is asked here.
+fn device(time: f32) -> Pose3 {
+    let way = (2.0 * time).min(1.0);
+    let aside = 0.012 * (2.0 * time - 1.0).clamp(0.0, 1.0);
+    let (sin, cos) = (TAU * time).sin_cos();
+    let place = Vec3::new(aside * cos, aside * sin, 0.1 * (way - 1.0));
+    Pose3::from_parts(place, Quat::from_rotation_x(10.0 * aside * sin))
+}
+
+/// A true device is given force and torque here.
+fn exert(wrench: Wrench) {
+    black_box(wrench);
+}
+
+/// Sleeps, and spins at last.
+fn wait_until(due: Instant) {
+    let asleep = due.saturating_duration_since(Instant::now() + AWAKE);
+    if !asleep.is_zero() {
+        sleep(asleep);
+    }
+    while Instant::now() < due {
+        spin_loop();
+    }
+}
