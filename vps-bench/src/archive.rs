@@ -1,98 +1,115 @@
-//! What a run leaves behind: raw rows as CSV, with units in the names of columns.
+//! Raw records: for each job a CSV file of rows, and a JSON file that says what they are.
+//!
+//! The JSON file is written last: a job that has one is done. Folders of several machines are merged
+//! by copying them into one.
 
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
 use vps_build::{FileError, write_atomically};
 
-/// One step of one simulation.
+use crate::environment::Environment;
+use crate::frame::{Columns, FrameError};
+use crate::job::Job;
+use crate::lab::Preparation;
+
+/// What is known of a job that was run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub(crate) struct StepRow {
-    pub(crate) algorithm: String,
-    /// Which of the random start orientations, from 0.
-    pub(crate) orientation: u32,
-    pub(crate) step: u32,
-    pub(crate) time_s: f64,
-    /// Collision queries of this step; 0 while the boxes of the bodies are apart.
-    pub(crate) queries: u64,
-    /// Time they took.
-    pub(crate) query_ns: u64,
-    /// Contact points given to the engine.
-    pub(crate) contacts: usize,
-    /// The deepest of them, negative if none touches yet.
-    pub(crate) penetration_m: Option<f32>,
-    /// How deep the mesh really is at the pose that was asked about.
-    pub(crate) true_penetration_m: f32,
-    /// Of the centre of mass, after the step.
-    pub(crate) linear_velocity_m_s: f32,
-    pub(crate) kinetic_energy_j: f32,
-    /// Pose that was asked about.
-    pub(crate) x_m: f32,
-    pub(crate) y_m: f32,
-    pub(crate) z_m: f32,
-    pub(crate) qx: f32,
-    pub(crate) qy: f32,
-    pub(crate) qz: f32,
-    pub(crate) qw: f32,
+pub(crate) struct JobRecord {
+    pub(crate) job: Job,
+    /// SHA-256 of all that decides what the job does: the experiment, its algorithm, its model.
+    pub(crate) settings: String,
+    /// `ok`, or why there are no rows.
+    pub(crate) status: String,
+    pub(crate) run_s: f64,
+    pub(crate) preparation: Preparation,
+    pub(crate) environment: Environment,
 }
 
-/// One simulation.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub(crate) struct JobRow {
-    pub(crate) algorithm: String,
-    pub(crate) orientation: u32,
-    /// `ok`, or why there are no steps of this job.
-    pub(crate) status: String,
-    pub(crate) simulate_s: f64,
-}
-
-/// What an algorithm made from the mesh.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub(crate) struct PreparationRow {
-    pub(crate) algorithm: String,
-    /// `ok`, or why the algorithm cannot be used.
-    pub(crate) status: String,
-    /// All of it, with reading what an earlier run built.
-    pub(crate) prepare_s: f64,
-    /// Building of assets, unless an earlier run did.
-    pub(crate) asset_build_s: Option<f64>,
-    /// Such as `799 points, 5 levels`.
-    pub(crate) size: String,
-    /// What its assets are known by, body and ground.
-    pub(crate) assets: String,
-    /// Size of their files.
-    pub(crate) asset_bytes: u64,
-}
+/// Rows of a job, as a CSV file.
+#[derive(Debug, Default)]
+pub(crate) struct Rows(Vec<u8>);
 
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum RecordError {
-    #[error("{}: {source}", path.display())]
-    Csv { path: PathBuf, source: csv::Error },
+pub(crate) enum ArchiveError {
+    #[error("{}: {what}", path.display())]
+    Record { path: PathBuf, what: String },
+    #[error(transparent)]
+    Frame(#[from] FrameError),
     #[error(transparent)]
     File(#[from] FileError),
 }
 
-pub(crate) fn write<R: Serialize>(path: &Path, rows: &[R]) -> Result<(), RecordError> {
-    let csv_error = |source| RecordError::Csv {
-        path: path.into(),
-        source,
-    };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row).map_err(csv_error)?;
+impl Rows {
+    /// One row each; the names of fields are those of the columns.
+    pub(crate) fn of<R: Serialize>(rows: &[R]) -> Result<Self, String> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in rows {
+            writer.serialize(row).map_err(|e| e.to_string())?;
+        }
+        writer.into_inner().map(Self).map_err(|e| e.to_string())
     }
-    let bytes = writer
-        .into_inner()
-        .map_err(|e| csv_error(e.into_error().into()))?;
-    Ok(write_atomically(path, &bytes)?)
 }
 
-pub(crate) fn read<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, RecordError> {
-    let csv_error = |source| RecordError::Csv {
+/// The raw records of an experiment.
+pub(crate) struct Archive {
+    folder: PathBuf,
+}
+
+impl Archive {
+    /// Those in a folder, which is made when it is needed.
+    pub(crate) fn new(folder: impl Into<PathBuf>) -> Self {
+        Self {
+            folder: folder.into(),
+        }
+    }
+
+    fn path(&self, job: &Job, extension: &str) -> PathBuf {
+        self.folder.join(format!("{}.{extension}", job.id()))
+    }
+
+    /// What is known of a job; `None` if it has not been run.
+    pub(crate) fn record(&self, job: &Job) -> Result<Option<JobRecord>, ArchiveError> {
+        let path = self.path(job, "json");
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(record_error(&path, &error)),
+        };
+        let record = serde_json::from_slice(&bytes).map_err(|e| record_error(&path, &e))?;
+        Ok(Some(record))
+    }
+
+    /// Keeps a job that was run.
+    pub(crate) fn write(&self, record: &JobRecord, rows: &Rows) -> Result<(), ArchiveError> {
+        write_atomically(&self.path(&record.job, "csv"), &rows.0)?;
+        let path = self.path(&record.job, "json");
+        let text = serde_json::to_vec_pretty(record).map_err(|e| record_error(&path, &e))?;
+        Ok(write_atomically(&path, &text)?)
+    }
+
+    /// The rows of jobs, behind columns that say which job each is of.
+    pub(crate) fn rows(&self, jobs: &[&Job]) -> Result<DataFrame, ArchiveError> {
+        let mut columns = Columns::default();
+        for job in jobs {
+            let same = [
+                ("case", job.case.clone()),
+                ("algorithm", job.algorithm.clone()),
+                ("seed", job.seed.to_string()),
+            ];
+            columns.append(&self.path(job, "csv"), &same)?;
+        }
+        columns.into_frame().map_err(|source| {
+            let path = self.folder.clone();
+            FrameError::Polars { path, source }.into()
+        })
+    }
+}
+
+fn record_error(path: &Path, what: &dyn std::fmt::Display) -> ArchiveError {
+    ArchiveError::Record {
         path: path.into(),
-        source,
-    };
-    let mut reader = csv::Reader::from_path(path).map_err(csv_error)?;
-    let rows: Result<_, _> = reader.deserialize().collect();
-    rows.map_err(csv_error)
+        what: format!("{what}: remove it to run the job again"),
+    }
 }

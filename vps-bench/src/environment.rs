@@ -4,10 +4,10 @@ use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::Experiment;
+use crate::models::sha256;
 use crate::timed::Stopwatch;
 
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Environment {
     /// Seconds since 1970.
     pub(crate) unix_time_s: u64,
@@ -27,18 +27,36 @@ pub(crate) struct Environment {
     pub(crate) revision: String,
     /// What taking the time of a query costs by itself; contained in every time.
     pub(crate) timer_overhead_ns: u64,
-    /// Switched off in the engine, so that every step asks.
-    pub(crate) contact_recycling: bool,
-    pub(crate) contact_clustering: bool,
-    pub(crate) sleeping: bool,
-    pub(crate) quick: bool,
-    pub(crate) model_sha256: String,
-    /// The experiment as it was run.
-    pub(crate) experiment: Experiment,
+    /// SHA-256 of this program.
+    pub(crate) program: String,
 }
 
 impl Environment {
-    pub(crate) fn of_now(experiment: &Experiment, quick: bool, model_sha256: String) -> Self {
+    /// Whether times taken in both may stand in one table, whichever machine took them: the same
+    /// processor, compiler, profile and versions. If not, what differs.
+    pub(crate) fn difference(&self, other: &Self) -> Option<String> {
+        let of = |e: &Self| {
+            [
+                ("processor", e.processor.clone()),
+                ("target", e.target.clone()),
+                ("compiler", e.rustc.clone()),
+                (
+                    "profile",
+                    format!("{}, opt-level {}", e.profile, e.opt_level),
+                ),
+                ("version", e.version.clone()),
+                ("revision", e.revision.clone()),
+                ("rapier3d", e.rapier3d.clone()),
+                ("parry3d", e.parry3d.clone()),
+            ]
+        };
+        let both = of(self).into_iter().zip(of(other));
+        let different = both.into_iter().find(|(a, b)| a != b);
+        different.map(|((what, a), (_, b))| format!("{what} is `{a}` here and `{b}` there"))
+    }
+
+    /// That of this run.
+    pub(crate) fn of_now() -> Self {
         let machine = sysinfo::System::new().map(|mut system| {
             system.refresh_memory();
             system.refresh_cpu_all();
@@ -65,14 +83,15 @@ impl Environment {
             parry3d: env!("VPS_PARRY3D").into(),
             revision: revision().unwrap_or_default(),
             timer_overhead_ns: Stopwatch::overhead_ns(),
-            contact_recycling: false,
-            contact_clustering: false,
-            sleeping: false,
-            quick,
-            model_sha256,
-            experiment: experiment.clone(),
+            program: program(),
         }
     }
+}
+
+/// Of the file this runs from; empty if it cannot be read.
+fn program() -> String {
+    let bytes = std::env::current_exe().and_then(std::fs::read);
+    bytes.map_or_else(|_| String::new(), |bytes| sha256(&bytes))
 }
 
 fn revision() -> Option<String> {

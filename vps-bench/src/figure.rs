@@ -14,6 +14,8 @@ pub(crate) struct Curve {
     pub(crate) color: RGBColor,
     /// Runs of points; between two runs nothing is drawn.
     pub(crate) runs: Vec<Vec<(f64, f64)>>,
+    /// Whether each point gets a dot.
+    pub(crate) has_points: bool,
 }
 
 /// A value printed in the paper, as a dashed line.
@@ -23,17 +25,104 @@ pub(crate) struct Mark {
     pub(crate) y: f64,
 }
 
-/// Curves over a linear x and a logarithmic y axis.
+/// What is along a side of a figure.
+pub(crate) struct Axis {
+    label: String,
+    range: Range<f64>,
+    is_logarithmic: bool,
+}
+
+/// Curves over two axes.
 pub(crate) struct Figure {
     pub(crate) title: String,
-    pub(crate) x_label: String,
-    pub(crate) y_label: String,
-    pub(crate) x: Range<f64>,
-    pub(crate) y: Range<f64>,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
     pub(crate) curves: Vec<Curve>,
     pub(crate) marks: Vec<Mark>,
     /// What the dashed lines are, for the legend.
     pub(crate) marks_label: String,
+}
+
+impl Axis {
+    pub(crate) fn linear(label: impl Into<String>, range: Range<f64>) -> Self {
+        Self {
+            label: label.into(),
+            range,
+            is_logarithmic: false,
+        }
+    }
+
+    /// From one power of ten to another.
+    pub(crate) fn logarithmic(label: impl Into<String>, range: Range<f64>) -> Self {
+        Self {
+            label: label.into(),
+            range,
+            is_logarithmic: true,
+        }
+    }
+
+    /// Where a value is drawn.
+    fn at(&self, value: f64) -> f64 {
+        if self.is_logarithmic {
+            value.log10()
+        } else {
+            value
+        }
+    }
+
+    fn drawn(&self) -> Range<f64> {
+        self.at(self.range.start)..self.at(self.range.end)
+    }
+
+    /// How many values are written along it: each power of ten.
+    fn labels(&self) -> usize {
+        if self.is_logarithmic {
+            let drawn = self.drawn();
+            (drawn.end - drawn.start).round() as usize + 1
+        } else {
+            11
+        }
+    }
+
+    /// What is written at a place.
+    fn text(&self, at: f64) -> String {
+        if self.is_logarithmic {
+            return plain(10_f64.powf(at.round()));
+        }
+        let span = self.range.end - self.range.start;
+        let digits = (1.0 - (span / 10.0).log10()).floor().clamp(0.0, 6.0) as usize;
+        let text = format!("{at:.digits$}");
+        if digits == 0 {
+            text
+        } else {
+            text.trim_end_matches('0').trim_end_matches('.').into()
+        }
+    }
+}
+
+/// Whole powers of ten around all values above zero, not below `least`.
+pub(crate) fn decades(curves: &[Curve], others: &[f64], least: f64) -> Range<f64> {
+    let points = curves.iter().flat_map(|c| c.runs.iter().flatten());
+    let values = points.map(|p| p.1).chain(others.iter().copied());
+    let (low, high) = values
+        .filter(|y| *y > 0.0 && y.is_finite())
+        .fold((f64::INFINITY, least), |(low, high), y| {
+            (y.min(low), y.max(high))
+        });
+    let low = low.min(high).max(least);
+    let (low, high) = (low.log10().floor(), high.log10().ceil());
+    10_f64.powf(low)..10_f64.powf(high.max(low + 1.0))
+}
+
+/// Nice bounds around all values, from zero if none is below it.
+pub(crate) fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (low, high) = values
+        .filter(|v| v.is_finite())
+        .fold((0.0, 0.0), |(low, high): (f64, f64), v| {
+            (low.min(v), high.max(v))
+        });
+    let step = 10_f64.powf((high - low).max(1e-9).log10().floor()) / 2.0;
+    (low / step).floor() * step..((high / step).ceil() * step).max(low + step)
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -41,22 +130,6 @@ pub(crate) struct Figure {
 pub(crate) struct FigureError {
     path: PathBuf,
     what: String,
-}
-
-/// Of Okabe and Ito: told apart also by those who see fewer colours.
-const COLORS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-    RGBColor(90, 90, 90),
-];
-
-/// The colour of the n-th algorithm, the same in all figures.
-pub(crate) fn color(n: usize) -> RGBColor {
-    COLORS[n % COLORS.len()]
 }
 
 const SIZE: (u32, u32) = (1100, 600);
@@ -90,21 +163,24 @@ impl Figure {
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Result<(), String> {
         let error = |e: DrawingAreaErrorKind<B::ErrorType>| e.to_string();
         area.fill(&WHITE).map_err(error)?;
+        let at = |(x, y): (f64, f64)| (self.x.at(x), self.y.at(y));
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, (FONT, 24))
             .margin(12)
             .x_label_area_size(48)
             .y_label_area_size(84)
-            .build_cartesian_2d(self.x.clone(), self.y.clone().log_scale())
+            .build_cartesian_2d(self.x.drawn(), self.y.drawn())
             .map_err(error)?;
         chart
             .configure_mesh()
-            .x_desc(&self.x_label)
-            .y_desc(&self.y_label)
+            .x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .x_labels(self.x.labels())
+            .y_labels(self.y.labels())
             .axis_desc_style((FONT, 19))
             .label_style((FONT, 17))
-            .x_label_formatter(&|x| format!("{x:.0}"))
-            .y_label_formatter(&|y| plain(*y))
+            .x_label_formatter(&|x| self.x.text(*x))
+            .y_label_formatter(&|y| self.y.text(*y))
             .light_line_style(RGBColor(242, 242, 242))
             .bold_line_style(RGBColor(222, 222, 222))
             .draw()
@@ -112,17 +188,22 @@ impl Figure {
         for curve in &self.curves {
             let color = curve.color;
             for (i, run) in curve.runs.iter().enumerate() {
-                let line = LineSeries::new(run.iter().copied(), color.stroke_width(2));
+                let points = || run.iter().copied().map(at);
+                let line = LineSeries::new(points(), color.stroke_width(2));
                 let drawn = chart.draw_series(line).map_err(error)?;
                 if i == 0 {
                     drawn.label(&curve.label).legend(move |(x, y)| {
                         PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3))
                     });
                 }
+                if curve.has_points {
+                    let dots = points().map(|p| Circle::new(p, 4, color.filled()));
+                    chart.draw_series(dots).map_err(error)?;
+                }
             }
         }
         for (i, mark) in self.marks.iter().enumerate() {
-            let ends = [(mark.x.start, mark.y), (mark.x.end, mark.y)];
+            let ends = [(mark.x.start, mark.y), (mark.x.end, mark.y)].map(at);
             let line = DashedLineSeries::new(ends, 7, 5, mark.color.stroke_width(2));
             let drawn = chart.draw_series(line).map_err(error)?;
             if i == 0 {
@@ -182,17 +263,16 @@ mod tests {
         std::fs::create_dir_all(&folder).unwrap();
         let figure = |title: &str| Figure {
             title: title.into(),
-            x_label: "step".into(),
-            y_label: "time".into(),
-            x: 0.0..10.0,
-            y: 1.0..1000.0,
+            x: Axis::linear("step", 0.0..10.0),
+            y: Axis::logarithmic("time", 1.0..1000.0),
             curves: vec![Curve {
                 label: "a".into(),
-                color: color(0),
+                color: RGBColor(0, 114, 178),
                 runs: vec![vec![(1.0, 3.0), (9.0, 300.0)]],
+                has_points: true,
             }],
             marks: vec![Mark {
-                color: color(0),
+                color: RGBColor(0, 114, 178),
                 x: 2.0..8.0,
                 y: 50.0,
             }],

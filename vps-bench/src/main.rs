@@ -1,37 +1,39 @@
-//! Runs experiments and writes their reports.
+//! Runs experiments and writes their report.
 
 #![forbid(unsafe_code)]
 
+mod algorithms;
+mod archive;
+mod claims;
+mod command;
 mod config;
-mod drop;
 mod environment;
-mod figures;
+mod experiments;
+mod figure;
+mod frame;
+mod job;
+mod lab;
 mod models;
-mod records;
+mod page;
 mod report;
 mod run;
-mod summary;
 mod timed;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
 
 use clap::{Parser, Subcommand};
-use indicatif::ProgressBar;
-use vps_build::AssetCache;
 
-use crate::config::Experiment;
-use crate::models::Models;
-use crate::run::Records;
+use crate::command::Project;
+use crate::job::Shard;
 
-/// Experiments on collision detection: runs them, writes records, tables and figures.
+/// Experiments on collision detection: runs them, writes records, tables, figures and verdicts.
 #[derive(Parser)]
 #[command(version)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Folder of the experiments and of models.toml
+    /// Folder of the experiments, of models.toml and algorithms.toml
     #[arg(long, global = true, default_value = "experiments")]
     experiments: PathBuf,
     /// Where models and assets are kept
@@ -44,31 +46,68 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// List the experiments
+    List,
     /// Fetch the models, all of them or those named
     Fetch { models: Vec<String> },
-    /// Run experiments and write their records and reports
+    /// Run experiments; what was run before by the same program with the same settings is kept
     Run {
         /// Names of experiments: files in the folder of experiments without `.toml`
         #[arg(required = true)]
         names: Vec<String>,
-        /// Few start orientations, to see that all works
-        #[arg(long)]
-        quick: bool,
-        /// Another model: a name in models.toml or the path of an OBJ file
+        #[command(flatten)]
+        choice: ChoiceArguments,
+        /// Another model: a name in models.toml or the path of a mesh
         #[arg(long)]
         model: Option<String>,
         /// Metres a unit of that model is long
         #[arg(long, requires = "model")]
         scale: Option<f64>,
     },
-    /// Write the reports again from the records
+    /// Write the report from the tables of all experiments that were run, or of those named
     Report {
-        #[arg(required = true)]
         names: Vec<String>,
-        /// A file to put the tables into, between `<!-- NAME -->` and `<!-- /NAME -->`
+        /// A file to put tables into, between `<!-- NAME -->` and `<!-- /NAME -->`
+        #[arg(long)]
+        splice: Option<PathBuf>,
+        /// Change nothing; fail if that file is not what it should be
+        #[arg(long, requires = "splice")]
+        check: bool,
+    },
+    /// Judge the claims; fails if one turned out otherwise than the experiments say
+    Check { names: Vec<String> },
+    /// Fetch, run and report everything, then check the claims
+    Reproduce {
+        #[command(flatten)]
+        choice: ChoiceArguments,
+        /// A file to put tables into
         #[arg(long)]
         splice: Option<PathBuf>,
     },
+}
+
+#[derive(clap::Args)]
+struct ChoiceArguments {
+    /// As little as shows that all works
+    #[arg(long)]
+    quick: bool,
+    /// Only jobs with this in their name, EXPERIMENT/CASE.ALGORITHM.SEED
+    #[arg(long)]
+    filter: Option<String>,
+    /// Only a part of the jobs, such as 2/3; copy the folders `raw` of all parts together and run
+    /// again for the tables
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+}
+
+impl ChoiceArguments {
+    fn choice(&self) -> run::Choice<'_> {
+        run::Choice {
+            quick: self.quick,
+            filter: self.filter.as_deref(),
+            shard: self.shard.unwrap_or(Shard::WHOLE),
+        }
+    }
 }
 
 fn main() -> ExitCode {
@@ -87,60 +126,38 @@ fn main() -> ExitCode {
     }
 }
 
-/// Does what was asked for; gives what failed of an experiment that was run all the same.
-fn execute(cli: &Cli) -> Result<Vec<String>, Box<dyn std::error::Error>> {
-    let mut failures = Vec::new();
-    let models = || {
-        Models::read(
-            &cli.experiments.join("models.toml"),
-            &cli.cache.join("models"),
-        )
+/// Does what was asked for; gives what failed of what was done all the same.
+fn execute(cli: &Cli) -> Result<Vec<String>, experiments::Error> {
+    let project = Project {
+        experiments: cli.experiments.clone(),
+        cache: cli.cache.clone(),
+        out: cli.out.clone(),
     };
     match &cli.command {
-        Command::Fetch { models: names } => {
-            let models = models()?;
-            let all: Vec<_> = models.names().map(String::from).collect();
-            for name in if names.is_empty() { &all } else { names } {
-                let progress = ProgressBar::new_spinner().with_message(format!("fetching {name}"));
-                progress.enable_steady_tick(Duration::from_millis(200));
-                let file = models.file(name)?;
-                progress.finish_and_clear();
-                println!("{name}: {}", file.display());
-            }
-        }
+        Command::List => project.list(),
+        Command::Fetch { models } => project.fetch(models),
         Command::Run {
             names,
-            quick,
+            choice,
             model,
             scale,
         } => {
-            let (models, assets) = (models()?, AssetCache::new(cli.cache.join("assets")));
-            for name in names {
-                let path = cli.experiments.join(format!("{name}.toml"));
-                let mut experiment = Experiment::read(&path)?;
-                if let Some(model) = model {
-                    experiment.body.model.clone_from(model);
-                }
-                experiment.body.scale = scale.unwrap_or(experiment.body.scale);
-                let records = run::run(&experiment, *quick, &models, &assets)?;
-                let folder = cli.out.join(name);
-                records.write(&folder)?;
-                let table = report::report(&folder, &records)?;
-                failures.extend(records.failures());
-                println!("{}\n\n{table}", experiment.title);
-                println!("{}", folder.join("report.md").display());
-            }
+            let other = model.as_deref().map(|model| (model, *scale));
+            project.run(names, choice.choice(), other)
         }
-        Command::Report { names, splice } => {
-            for name in names {
-                let folder = cli.out.join(name);
-                let table = report::report(&folder, &Records::read(&folder)?)?;
-                if let Some(path) = splice {
-                    report::splice(path, name, &table)?;
-                }
-                println!("{}", folder.join("report.md").display());
-            }
+        Command::Report {
+            names,
+            splice,
+            check,
+        } => project.report(names, splice.as_deref(), *check),
+        Command::Check { names } => project.check(names),
+        Command::Reproduce { choice, splice } => {
+            project.fetch(&[])?;
+            let names = project.names()?;
+            let mut failures = project.run(&names, choice.choice(), None)?;
+            failures.extend(project.report(&[], splice.as_deref(), false)?);
+            failures.extend(project.check(&[])?);
+            Ok(failures)
         }
     }
-    Ok(failures)
 }

@@ -1,234 +1,195 @@
-//! Runs an experiment: prepares the algorithms, simulates every job, writes the records.
+//! Runs the jobs of an experiment and keeps what they leave behind.
 
-use std::cell::RefCell;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vps_build::{
-    AssetCache, BuildOptions, CachedAsset, Mesh, PointCount, Resolution, mass_properties, read_mesh,
-};
-use vps_compare::oracle::PlaneOracle;
-use vps_compare::{
-    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
-    Vps, VpsGround,
-};
-use vps_rapier::Sampling;
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+use vps_build::write_atomically;
 
-use crate::config::{self, Experiment, Method, SamplingName};
-use crate::drop::Drop;
+use crate::archive::{Archive, JobRecord, Rows};
+use crate::config::ExperimentFile;
 use crate::environment::Environment;
-use crate::models::{Models, sha256};
-use crate::records::{JobRow, PreparationRow, StepRow};
+use crate::experiments::{Error, Experiment};
+use crate::job::{Job, Shard};
+use crate::lab::{Lab, Preparation};
+use crate::models::sha256;
 
-/// Everything a run leaves behind.
-pub(crate) struct Records {
-    pub(crate) environment: Environment,
-    pub(crate) preparations: Vec<PreparationRow>,
-    pub(crate) jobs: Vec<JobRow>,
-    pub(crate) steps: Vec<StepRow>,
+/// Which jobs are run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice<'c> {
+    pub(crate) quick: bool,
+    /// Only those with this in their name.
+    pub(crate) filter: Option<&'c str>,
+    pub(crate) shard: Shard,
 }
 
-type Error = Box<dyn std::error::Error>;
+/// What became of an experiment.
+pub(crate) struct Outcome {
+    /// Jobs run now, and those that had been run before.
+    pub(crate) run: usize,
+    pub(crate) kept: usize,
+    /// Jobs that are left to other shards or filters.
+    pub(crate) missing: usize,
+    /// What failed, a line each.
+    pub(crate) failures: Vec<String>,
+}
 
-/// Runs all jobs of an experiment, one after the other: they are timed. A job that fails gives a
-/// row that says so.
+/// What all tables of an experiment were made with, kept beside them.
+#[derive(Debug, Deserialize, Serialize)]
+pub(crate) struct MadeWith {
+    pub(crate) experiment: ExperimentFile,
+    pub(crate) quick: bool,
+    pub(crate) environment: Environment,
+    /// Jobs, one line each.
+    pub(crate) failures: Vec<String>,
+}
+
+/// Runs what has not been run before by this program with the same settings, and makes the tables
+/// when all jobs are done. `folder` is that of the experiment's report.
 pub(crate) fn run(
-    experiment: &Experiment,
-    quick: bool,
-    models: &Models,
-    assets: &AssetCache,
-) -> Result<Records, Error> {
-    let path = models.file(&experiment.body.model)?;
-    let mesh = read_mesh(&path, None)?;
-    let named = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-    let mesh = mesh.scaled(experiment.body.scale).map_err(|e| named(&e))?;
-    let mass = mass_properties(&mesh).map_err(|e| named(&e))?;
-    let drop = Drop {
-        experiment,
-        mass,
-        oracle: PlaneOracle::new(&mesh).map_err(|e| named(&e))?,
+    name: &str,
+    file: &ExperimentFile,
+    choice: Choice<'_>,
+    lab: &Lab,
+    folder: &Path,
+) -> Result<Outcome, Error> {
+    let experiment = file.kind()?;
+    let archive = Archive::new(folder.join("raw"));
+    let jobs = experiment.jobs(choice.quick);
+    let environment = Environment::of_now();
+    let identity = experiment.identity(lab)?;
+    let mut outcome = Outcome {
+        run: 0,
+        kept: 0,
+        missing: 0,
+        failures: Vec::new(),
     };
-    let environment = Environment::of_now(experiment, quick, sha256(&std::fs::read(&path)?));
-
-    let progress = ProgressBar::new(0);
-    progress.enable_steady_tick(Duration::from_millis(200));
-    let mut preparations = Vec::new();
-    let mut ready = Vec::new();
-    for algorithm in &experiment.algorithm {
-        progress.set_style(ProgressStyle::default_spinner());
-        progress.set_message(format!("preparing {}", algorithm.label));
-        let (row, prepared) = prepare(experiment, algorithm, &mesh, assets);
-        preparations.push(row);
-        ready.extend(prepared.map(|p| (algorithm, p)));
-    }
-    let orientations = if quick {
-        experiment.quick.orientations
-    } else {
-        experiment.runs.orientations
-    };
-    progress.set_length(u64::from(orientations) * ready.len() as u64);
-    let style = "{bar:30} {pos}/{len} simulations, {elapsed} of about {duration}  {msg}";
+    let progress = ProgressBar::new(jobs.len() as u64);
+    let style = "{bar:30} {pos}/{len} jobs, {elapsed} of about {duration}  {msg}";
     progress.set_style(ProgressStyle::with_template(style)?);
-    let (mut jobs, mut steps) = (Vec::new(), Vec::new());
-    // Orientation by orientation, so that a slow minute of the machine meets all algorithms.
-    for orientation in 0..orientations {
-        for (algorithm, prepared) in &ready {
-            progress.set_message(algorithm.label.clone());
-            let start = Instant::now();
-            let result = drop.simulate(&algorithm.name, prepared, orientation);
-            let status = match result {
-                Ok(rows) => {
-                    steps.extend(rows);
-                    "ok".into()
-                }
-                Err(why) => why,
-            };
-            jobs.push(JobRow {
-                algorithm: algorithm.name.clone(),
-                orientation,
-                status,
-                simulate_s: start.elapsed().as_secs_f64(),
-            });
-            progress.inc(1);
+    progress.enable_steady_tick(Duration::from_millis(200));
+    for (number, job) in jobs.iter().enumerate() {
+        progress.inc(1);
+        let id = format!("{name}/{}", job.id());
+        let settings = settings_of(experiment, job, &identity, lab)?;
+        let known = archive.record(job)?.filter(|record| {
+            let is_same = record.environment.program == environment.program;
+            record.status == "ok" && record.settings == settings && is_same
+        });
+        if known.is_some() {
+            outcome.kept += 1;
+            continue;
         }
+        if !choice.shard.has(number) || choice.filter.is_some_and(|f| !id.contains(f)) {
+            outcome.missing += 1;
+            continue;
+        }
+        progress.set_message(id);
+        let start = Instant::now();
+        let (status, rows, preparation) = match experiment.run(job, lab) {
+            Ok(measured) => ("ok".into(), measured.rows, measured.preparation),
+            Err(why) => (why, Rows::default(), Preparation::default()),
+        };
+        let record = JobRecord {
+            job: job.clone(),
+            settings,
+            status,
+            run_s: start.elapsed().as_secs_f64(),
+            preparation,
+            environment: environment.clone(),
+        };
+        archive.write(&record, &rows)?;
+        outcome.run += 1;
     }
     progress.finish_and_clear();
-    Ok(Records {
-        environment,
-        preparations,
-        jobs,
-        steps,
-    })
+    if outcome.missing == 0 {
+        outcome.failures = summarize(file, choice.quick, &archive, &jobs, folder)?;
+    }
+    Ok(outcome)
 }
 
-fn prepare(
-    experiment: &Experiment,
-    algorithm: &config::Algorithm,
-    mesh: &Mesh,
-    assets: &AssetCache,
-) -> (PreparationRow, Option<Prepared>) {
-    let scene = Scene {
-        body: mesh,
-        ground_extents: experiment.ground.extents_m,
+/// A number for all that decides what a job does.
+fn settings_of(
+    experiment: &dyn Experiment,
+    job: &Job,
+    identity: &str,
+    lab: &Lab,
+) -> Result<String, Error> {
+    let algorithm = match lab.algorithms.get(&job.algorithm) {
+        Ok(algorithm) => serde_json::to_string(&algorithm.method)?,
+        Err(_) => String::new(),
     };
-    let used: RefCell<Vec<CachedAsset>> = RefCell::default();
-    let get = |mesh: &Mesh, options: &BuildOptions| {
-        let kept = assets
-            .get(mesh, options, &|_| ())
-            .map_err(|e| e.to_string())?;
-        let asset = kept.asset.clone();
-        used.borrow_mut().push(kept);
-        Ok(asset)
+    let all = format!(
+        "{} {} {identity} {algorithm}",
+        job.id(),
+        experiment.settings()?
+    );
+    Ok(sha256(all.as_bytes()))
+}
+
+/// Makes the small tables from the raw records of all jobs; gives what failed, a line each.
+fn summarize(
+    file: &ExperimentFile,
+    quick: bool,
+    archive: &Archive,
+    jobs: &[Job],
+    folder: &Path,
+) -> Result<Vec<String>, Error> {
+    let mut records = Vec::new();
+    for job in jobs {
+        let record = archive.record(job)?;
+        records.push(record.ok_or_else(|| format!("{} has not been run", job.id()))?);
+    }
+    let Some(first) = records.first() else {
+        return Err("there is nothing to run".into());
     };
-    let start = Instant::now();
-    let result = match &algorithm.method {
-        Method::Vps(settings) => vps(settings, &get).prepare(&scene),
-        Method::ConvexHull => ConvexHull.prepare(&scene),
-        &Method::ConvexDecomposition {
-            parts,
-            vertices,
-            resolution,
-        } => ConvexDecomposition {
-            parts,
-            vertices,
-            resolution,
+    for record in &records {
+        if let Some(difference) = first.environment.difference(&record.environment) {
+            let [a, b] = [first, record].map(|r| r.job.id());
+            return Err(format!("{a} and {b} cannot stand in one table: {difference}").into());
         }
-        .prepare(&scene),
-        Method::Trimesh => Trimesh.prepare(&scene),
+    }
+    let failed = records.iter().filter(|r| r.status != "ok");
+    let mut failures: Vec<_> = failed
+        .map(|r| format!("{}: {}", r.job.algorithm, r.status))
+        .collect();
+    failures.dedup();
+    let done: Vec<_> = records.iter().filter(|r| r.status == "ok").collect();
+    crate::frame::write(&folder.join("jobs.csv"), &job_table(&records)?)?;
+    if !done.is_empty() {
+        let rows = archive.rows(&done.iter().map(|r| &r.job).collect::<Vec<_>>())?;
+        for (name, table) in file.kind()?.summarize(&rows)? {
+            crate::frame::write(&folder.join(format!("{name}.csv")), &table)?;
+        }
+    }
+    let made_with = MadeWith {
+        experiment: file.clone(),
+        quick,
+        environment: first.environment.clone(),
+        failures: failures.clone(),
     };
-    let prepare_s = start.elapsed().as_secs_f64();
-    let status = match &result {
-        Ok(_) => "ok".into(),
-        Err(error) => error.to_string(),
-    };
-    let prepared = result.ok();
-    let size = prepared.iter().flat_map(|p| &p.size);
-    let used = used.into_inner();
-    let row = PreparationRow {
-        algorithm: algorithm.name.clone(),
-        status,
-        prepare_s,
-        asset_build_s: used
-            .iter()
-            .filter_map(|kept| kept.build_s)
-            .reduce(|a, b| a + b),
-        size: joined(size.map(|(what, n)| format!("{n} {what}"))),
-        assets: joined(used.iter().map(|kept| kept.key.clone())),
-        asset_bytes: used.iter().map(|kept| kept.file_bytes).sum(),
-    };
-    (row, prepared)
+    let text = serde_json::to_vec_pretty(&made_with)?;
+    write_atomically(&folder.join("made_with.json"), &text)?;
+    Ok(failures)
 }
 
-fn joined(parts: impl Iterator<Item = String>) -> String {
-    parts.collect::<Vec<_>>().join(", ")
-}
-
-fn vps<'a>(settings: &config::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
-    let ground = match settings.ground_voxel_size_m {
-        Some(size) => VpsGround::Voxelmap(BuildOptions {
-            resolution: Resolution::VoxelSize(size),
-            margin: settings.ground_margin.unwrap_or(4),
-            // It is never the shell.
-            points: PointCount::About(100),
-            ..BuildOptions::default()
-        }),
-        None => VpsGround::Cuboid,
-    };
-    Vps {
-        body: BuildOptions {
-            resolution: Resolution::VoxelSize(settings.voxel_size_m),
-            margin: settings.margin,
-            points: PointCount::About(settings.points),
-            branching: settings.branching,
-            ..BuildOptions::default()
-        },
-        ground,
-        sampling: match settings.sampling {
-            SamplingName::Trilinear => Sampling::Trilinear,
-            SamplingName::Local => Sampling::Local,
-        },
-        assets,
-    }
-}
-
-impl Records {
-    /// What failed, one text each.
-    pub(crate) fn failures(&self) -> Vec<String> {
-        let preparations = self.preparations.iter().filter(|p| p.status != "ok");
-        let preparations = preparations.map(|p| format!("{}: {}", p.algorithm, p.status));
-        let jobs = self.jobs.iter().filter(|j| j.status != "ok");
-        let jobs = jobs.map(|j| {
-            format!(
-                "{}, orientation {}: {}",
-                j.algorithm, j.orientation, j.status
-            )
-        });
-        preparations.chain(jobs).collect()
-    }
-
-    /// Writes all records into a folder.
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), Error> {
-        crate::records::write(&folder.join("steps.csv"), &self.steps)?;
-        crate::records::write(&folder.join("jobs.csv"), &self.jobs)?;
-        crate::records::write(&folder.join("preparations.csv"), &self.preparations)?;
-        let environment = serde_json::to_string_pretty(&self.environment)?;
-        vps_build::write_atomically(&folder.join("environment.json"), environment.as_bytes())?;
-        Ok(())
-    }
-
-    /// Reads what [`write`](Self::write) wrote.
-    pub(crate) fn read(folder: &Path) -> Result<Self, Error> {
-        let path = folder.join("environment.json");
-        let environment = std::fs::read(&path)
-            .map_err(|e| format!("{}: {e}: has the experiment been run?", path.display()))?;
-        let environment = serde_json::from_slice(&environment)
-            .map_err(|e| format!("{}: {e}: run the experiment again", path.display()))?;
-        Ok(Self {
-            environment,
-            preparations: crate::records::read(&folder.join("preparations.csv"))?,
-            jobs: crate::records::read(&folder.join("jobs.csv"))?,
-            steps: crate::records::read(&folder.join("steps.csv"))?,
-        })
-    }
+/// A row a job.
+fn job_table(records: &[JobRecord]) -> Result<DataFrame, Error> {
+    let text = |f: fn(&JobRecord) -> String| records.iter().map(f).collect::<Vec<_>>();
+    let number = |f: fn(&JobRecord) -> f64| records.iter().map(f).collect::<Vec<_>>();
+    Ok(polars::df!(
+        "case" => text(|r| r.job.case.clone()),
+        "algorithm" => text(|r| r.job.algorithm.clone()),
+        "seed" => number(|r| f64::from(r.job.seed)),
+        "status" => text(|r| r.status.clone()),
+        "run_s" => number(|r| r.run_s),
+        "prepare_s" => number(|r| r.preparation.prepare_s),
+        "asset_build_s" => records.iter().map(|r| r.preparation.asset_build_s).collect::<Vec<_>>(),
+        "size" => text(|r| r.preparation.size.clone()),
+        "assets" => text(|r| r.preparation.assets.clone()),
+        "asset_bytes" => number(|r| r.preparation.asset_bytes as f64),
+        "settings" => text(|r| r.settings.clone()),
+    )?)
 }

@@ -4,7 +4,7 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::SharedShape;
 use vps_build::{BuildOptions, Mesh};
 use vps_core::Asset;
-use vps_rapier::{Role, Sampling, VpsDispatcher, VpsShape};
+use vps_rapier::{Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
 
 use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene};
 
@@ -16,6 +16,8 @@ pub struct Vps<'s> {
     pub ground: VpsGround,
     /// How a voxelmap is sampled.
     pub sampling: Sampling,
+    /// Which contacts an engine gets.
+    pub manifolds: Manifolds,
     /// Where assets come from.
     pub assets: &'s AssetSource<'s>,
 }
@@ -55,7 +57,7 @@ impl CollisionAlgorithm for Vps<'_> {
         };
         let dispatcher = VpsDispatcher {
             sampling: self.sampling,
-            ..VpsDispatcher::default()
+            manifolds: self.manifolds,
         };
         Ok(Prepared {
             body: VpsShape::new(body).with_role(Role::Pointshell).into(),

@@ -80,10 +80,11 @@ impl<const N: usize> ContactManifold<N> {
         };
         let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
         manifold.push(deepest);
-        while manifold.len < N {
+        let mut most = N;
+        while manifold.len < most {
             let mut picked = next(&polygon);
             if picked.is_none() && manifold.len < STANDS_ON && polygon.least > -margin {
-                polygon.least = -margin;
+                (polygon.least, most) = (-margin, N.min(STANDS_ON));
                 picked = next(&polygon);
             }
             let Some(next) = picked else {

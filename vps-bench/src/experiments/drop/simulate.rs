@@ -5,39 +5,64 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rapier3d::prelude::*;
-use vps_compare::oracle::PlaneOracle;
+use serde::Serialize;
 use vps_compare::{Prepared, summary};
 use vps_core::Quat;
 
-use crate::config::Experiment;
-use crate::records::StepRow;
+use super::Settings;
+use crate::lab::Body;
 use crate::timed::{Stopwatch, Timed};
 
-/// What all algorithms of an experiment share.
-pub(crate) struct Drop<'e> {
-    pub(crate) experiment: &'e Experiment,
-    /// Of the body's mesh, at density one.
-    pub(crate) mass: vps_core::MassProperties,
-    pub(crate) oracle: PlaneOracle,
+/// One step of one simulation.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct StepRow {
+    step: u32,
+    time_s: f64,
+    /// Collision queries of this step; 0 while the boxes of the bodies are apart.
+    queries: u64,
+    /// Time they took.
+    query_ns: u64,
+    /// Contact points given to the engine.
+    contacts: usize,
+    /// The deepest of them, negative if none touches yet.
+    penetration_m: Option<f32>,
+    /// How deep the mesh really is at the pose that was asked about.
+    true_penetration_m: f32,
+    /// Of the centre of mass, after the step.
+    linear_velocity_m_s: f32,
+    angular_velocity_rad_s: f32,
+    /// By how much the angular velocity changed in the step.
+    spin_change_rad_s: f32,
+    kinetic_energy_j: f32,
+    /// Pose that was asked about.
+    x_m: f32,
+    y_m: f32,
+    z_m: f32,
+    qx: f32,
+    qy: f32,
+    qz: f32,
+    qw: f32,
 }
 
-impl Drop<'_> {
+impl Settings {
     /// Simulates one start orientation with one algorithm; a row a step.
     ///
     /// # Errors
     /// When the engine could not ask the algorithm: it would have gone on without contacts.
-    pub(crate) fn simulate(
+    pub(super) fn simulate(
         &self,
-        algorithm: &str,
+        falling: &Body,
         prepared: &Prepared,
+        frequency: u32,
         orientation: u32,
     ) -> Result<Vec<StepRow>, String> {
         let stopwatch = Arc::new(Stopwatch::default());
-        let (mut world, body) = self.world(prepared, &stopwatch, orientation);
-        let frequency = f64::from(self.experiment.world.frequency_hz);
-        let mut rows = Vec::with_capacity(self.experiment.world.steps as usize);
-        for step in 0..self.experiment.world.steps {
+        let (mut world, body) = self.world(falling, prepared, &stopwatch, frequency, orientation);
+        let steps = self.steps(frequency);
+        let mut rows = Vec::with_capacity(steps as usize);
+        for step in 0..steps {
             let asked = *world.bodies[body].position();
+            let spin = world.bodies[body].angvel();
             world.step();
             let queries = stopwatch.take();
             if queries.unsupported > 0 {
@@ -52,16 +77,16 @@ impl Drop<'_> {
             }
             let (t, q) = (asked.translation, asked.rotation);
             rows.push(StepRow {
-                algorithm: algorithm.into(),
-                orientation,
                 step,
-                time_s: f64::from(step) / frequency,
+                time_s: f64::from(step) / f64::from(frequency),
                 queries: queries.count,
                 query_ns: queries.ns,
                 contacts,
                 penetration_m,
-                true_penetration_m: self.oracle.penetration(&asked, 0.0),
+                true_penetration_m: falling.oracle.penetration(&asked, 0.0),
                 linear_velocity_m_s: body.linvel().length(),
+                angular_velocity_rad_s: body.angvel().length(),
+                spin_change_rad_s: (body.angvel() - spin).length(),
                 kinetic_energy_j: body.kinetic_energy(),
                 x_m: t.x,
                 y_m: t.y,
@@ -78,59 +103,51 @@ impl Drop<'_> {
     /// The ground with its upper side at height 0, and the body above it.
     fn world(
         &self,
+        falling: &Body,
         prepared: &Prepared,
         stopwatch: &Arc<Stopwatch>,
+        frequency: u32,
         orientation: u32,
     ) -> (PhysicsWorld, RigidBodyHandle) {
-        let Experiment {
-            body,
-            ground,
-            world: settings,
-            ..
-        } = self.experiment;
         let timed = Timed::new(prepared.dispatcher.clone(), stopwatch.clone());
         let mut world = PhysicsWorld {
             narrow_phase: NarrowPhase::with_query_dispatcher(timed),
-            gravity: Vector::new(0.0, -settings.gravity_m_s2, 0.0),
+            gravity: Vector::new(0.0, -self.gravity_m_s2, 0.0),
             ..PhysicsWorld::default()
         };
         let parameters = &mut world.integration_parameters;
-        parameters.dt = 1.0 / settings.frequency_hz;
+        parameters.dt = 1.0 / frequency as f32;
         parameters.contact_recycling = false;
         parameters.contact_clustering = false;
-        parameters.normalized_prediction_distance = settings.prediction_m / parameters.length_unit;
+        parameters.normalized_prediction_distance = self.prediction_m / parameters.length_unit;
 
-        let below = Vector::new(0.0, -0.5 * ground.extents_m[1] as f32, 0.0);
+        let below = Vector::new(0.0, -0.5 * self.ground_extents_m[1] as f32, 0.0);
         let material = |shape: &SharedShape| {
             ColliderBuilder::new(shape.clone())
-                .friction(body.friction)
-                .restitution(body.restitution)
+                .friction(self.friction)
+                .restitution(self.restitution)
         };
         world.insert(
             RigidBodyBuilder::fixed().translation(below),
             material(&prepared.ground),
         );
         let rotation = self.start_orientation(orientation);
-        let center = self.mass.center();
-        let start = Vector::new(0.0, settings.drop_height_m, 0.0) - rotation * center;
-        let inertia = self.mass.inertia_tensor(body.mass_kg);
-        let mass = MassProperties::with_inertia_matrix(center, body.mass_kg, inertia);
-        let falling = RigidBodyBuilder::dynamic()
+        let center = falling.mass.center();
+        let start = Vector::new(0.0, self.drop_height_m, 0.0) - rotation * center;
+        let inertia = falling.mass.inertia_tensor(self.mass_kg);
+        let mass = MassProperties::with_inertia_matrix(center, self.mass_kg, inertia);
+        let builder = RigidBodyBuilder::dynamic()
             .pose(Pose::from_parts(start, rotation))
             .additional_mass_properties(mass)
             .can_sleep(false);
         // All mass is that of the solid, whatever an algorithm made of it.
-        let (handle, _) = world.insert(falling, material(&prepared.body).density(0.0));
+        let (handle, _) = world.insert(builder, material(&prepared.body).density(0.0));
         (world, handle)
     }
 
     /// Uniformly distributed (Shoemake, 1992); the same for all algorithms.
     fn start_orientation(&self, orientation: u32) -> Quat {
-        let seed = self
-            .experiment
-            .runs
-            .seed
-            .wrapping_add(u64::from(orientation));
+        let seed = self.seed.wrapping_add(u64::from(orientation));
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let [u, v, w]: [f32; 3] = rng.random();
         let (v, w) = (v * std::f32::consts::TAU, w * std::f32::consts::TAU);

@@ -1,0 +1,185 @@
+//! Claims of the paper, and of this project, judged from the tables of an experiment.
+
+use std::collections::BTreeMap;
+
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+
+use crate::frame::rows;
+use crate::page::short;
+
+/// A statement that a value, or the ratio of two, lies in a range.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Claim {
+    pub(crate) name: String,
+    /// What is claimed.
+    pub(crate) says: String,
+    /// Where it stands; empty if this project says so itself.
+    #[serde(default)]
+    pub(crate) source: String,
+    /// The number the paper prints, of the same kind as what is measured.
+    pub(crate) paper: Option<f64>,
+    #[serde(default)]
+    pub(crate) unit: String,
+    /// What is measured; without it nothing here can be compared.
+    pub(crate) value: Option<Cell>,
+    /// What it is divided by.
+    pub(crate) against: Option<Cell>,
+    pub(crate) at_least: Option<f64>,
+    pub(crate) at_most: Option<f64>,
+    /// What this project stands for: `check` fails when it turns out otherwise.
+    pub(crate) expect: Outcome,
+    /// Why it does not hold, or cannot be compared.
+    #[serde(default)]
+    pub(crate) why: String,
+}
+
+/// A value in a table.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Cell {
+    pub(crate) table: String,
+    /// Columns and what they hold, which must be true of one row.
+    pub(crate) row: BTreeMap<String, String>,
+    pub(crate) column: String,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Outcome {
+    Holds,
+    DoesNotHold,
+    NotComparable,
+}
+
+/// A claim and what became of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Verdict {
+    pub(crate) claim: Claim,
+    pub(crate) measured: Option<f64>,
+    pub(crate) outcome: Outcome,
+}
+
+/// Tables of an experiment by name.
+pub(crate) type Tables = BTreeMap<String, DataFrame>;
+
+impl Outcome {
+    /// In words.
+    pub(crate) fn text(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::DoesNotHold => "does not hold",
+            Self::NotComparable => "not comparable",
+        }
+    }
+}
+
+impl Claim {
+    /// That it can be judged.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let has_range = self.at_least.is_some() || self.at_most.is_some();
+        match &self.value {
+            None if self.expect != Outcome::NotComparable => {
+                Err(format!("claim `{}`: value is missing", self.name))
+            }
+            None if self.why.is_empty() => Err(format!("claim `{}`: why is missing", self.name)),
+            Some(_) if !has_range => Err(format!(
+                "claim `{}`: at_least or at_most is missing",
+                self.name
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Judges it; what is not in the tables is not comparable.
+    pub(crate) fn judge(&self, tables: &Tables) -> Verdict {
+        let measured = self.value.as_ref().and_then(|value| {
+            let value = value.read(tables)?;
+            match &self.against {
+                None => Some(value),
+                Some(against) => Some(value / against.read(tables)?),
+            }
+        });
+        let outcome = match measured {
+            None => Outcome::NotComparable,
+            Some(value) => {
+                let fits = self.at_least.is_none_or(|least| value >= least)
+                    && self.at_most.is_none_or(|most| value <= most);
+                if fits {
+                    Outcome::Holds
+                } else {
+                    Outcome::DoesNotHold
+                }
+            }
+        };
+        Verdict {
+            claim: self.clone(),
+            measured,
+            outcome,
+        }
+    }
+
+    /// The range in which it holds.
+    pub(crate) fn range(&self) -> String {
+        match (self.at_least, self.at_most) {
+            (Some(least), Some(most)) => format!("{} to {}", short(least), short(most)),
+            (Some(least), None) => format!("at least {}", short(least)),
+            (None, Some(most)) => format!("at most {}", short(most)),
+            (None, None) => "–".into(),
+        }
+    }
+}
+
+impl Cell {
+    fn read(&self, tables: &Tables) -> Option<f64> {
+        let mut found = rows(tables.get(&self.table)?).filter(|row| row.matches(&self.row));
+        match (found.next(), found.next()) {
+            (Some(row), None) => row.number(&self.column),
+            _ => None,
+        }
+    }
+}
+
+impl Verdict {
+    /// Whether it turned out as the project says.
+    pub(crate) fn is_as_expected(&self) -> bool {
+        self.outcome == self.claim.expect
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use polars::df;
+
+    use super::*;
+
+    fn claim(text: &str) -> Claim {
+        toml::from_str(text).unwrap()
+    }
+
+    #[test]
+    fn claims_are_judged_by_their_range() {
+        let table = df!("algorithm" => ["a", "b"], "query_us" => [2.0, 20.0]).unwrap();
+        let tables = Tables::from([("summary".to_owned(), table)]);
+        let ratio = |range: &str| {
+            claim(&format!(
+                "name = \"n\"\nsays = \"s\"\nexpect = \"holds\"\n{range}\n\
+                 value = {{ table = \"summary\", row = {{ algorithm = \"b\" }}, column = \"query_us\" }}\n\
+                 against = {{ table = \"summary\", row = {{ algorithm = \"a\" }}, column = \"query_us\" }}\n"
+            ))
+        };
+        let judge = |range: &str| ratio(range).judge(&tables);
+        assert_eq!(judge("at_least = 9").measured, Some(10.0));
+        assert!(judge("at_least = 9").is_as_expected());
+        assert_eq!(judge("at_least = 11").outcome, Outcome::DoesNotHold);
+        assert_eq!(
+            judge("at_least = 1\nat_most = 9").outcome,
+            Outcome::DoesNotHold
+        );
+        assert!(ratio("").check().is_err());
+        assert!(ratio("at_most = 1").check().is_ok());
+        let missing = ratio("at_most = 1").judge(&Tables::new());
+        assert_eq!(missing.outcome, Outcome::NotComparable);
+    }
+}

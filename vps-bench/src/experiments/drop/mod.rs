@@ -1,0 +1,228 @@
+//! A body falls on the ground, simulated once for each algorithm.
+
+mod show;
+mod simulate;
+mod summary;
+
+use std::path::Path;
+
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+use vps_compare::Scene;
+
+use super::{Error, Experiment, Measured};
+use crate::algorithms::Algorithms;
+use crate::archive::Rows;
+use crate::claims::Tables;
+use crate::config::{not_negative, positive};
+use crate::job::Job;
+use crate::lab::Lab;
+use crate::page::Block;
+
+/// What falls, and how.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    /// A name in `models.toml` or the path of a mesh.
+    pub(crate) model: String,
+    /// Metres a unit of the model is long.
+    pub(crate) scale: f64,
+    mass_kg: f32,
+    friction: f32,
+    restitution: f32,
+    /// A box.
+    ground_extents_m: [f64; 3],
+    gravity_m_s2: f32,
+    /// Of the centre of mass above the ground.
+    drop_height_m: f32,
+    /// How far ahead contacts are found, for all algorithms.
+    prediction_m: f32,
+    duration_s: f64,
+    /// What counts, from and to.
+    measured_s: [f64; 2],
+    /// A case each.
+    frequencies_hz: Vec<u32>,
+    /// Random start orientations, and how many of them in a quick run.
+    orientations: u32,
+    quick_orientations: u32,
+    seed: u64,
+    algorithms: Vec<String>,
+    /// What ratios refer to.
+    reference: Option<String>,
+    show: Vec<Show>,
+    #[serde(default)]
+    paper_value: Vec<PaperValue>,
+}
+
+/// What tables and figures show.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Show {
+    /// Times of queries, a row an algorithm, with the curves.
+    QueryTimes,
+    /// Linear velocity over steps.
+    LinearVelocity,
+    /// Kinetic energy over steps.
+    KineticEnergy,
+    /// How evenly it rolls.
+    Spin,
+    /// Whether the body is held, by frequency.
+    Frequencies,
+}
+
+/// A mean time of a query the paper prints.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct PaperValue {
+    algorithm: String,
+    query_us: f64,
+    /// Where it stands.
+    source: String,
+}
+
+impl Settings {
+    fn case(frequency: u32) -> String {
+        format!("{frequency}hz")
+    }
+
+    /// The number of steps at a frequency.
+    fn steps(&self, frequency: u32) -> u32 {
+        (self.duration_s * f64::from(frequency)).round() as u32
+    }
+
+    /// The first step that counts and the one after the last.
+    fn measured_steps(&self, frequency: u32) -> [u32; 2] {
+        self.measured_s
+            .map(|s| (s * f64::from(frequency)).round() as u32)
+    }
+
+    /// Another body than the file says.
+    pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
+        self.model = model.into();
+        self.scale = scale.unwrap_or(self.scale);
+    }
+
+    fn paper_value(&self, algorithm: &str) -> Option<&PaperValue> {
+        self.paper_value.iter().find(|v| v.algorithm == algorithm)
+    }
+}
+
+impl Experiment for Settings {
+    fn check(&self) -> Result<(), String> {
+        positive("drop.mass_kg", self.mass_kg.into())?;
+        positive("drop.drop_height_m", self.drop_height_m.into())?;
+        positive("drop.prediction_m", self.prediction_m.into())?;
+        positive("drop.duration_s", self.duration_s)?;
+        not_negative("drop.friction", self.friction.into())?;
+        not_negative("drop.restitution", self.restitution.into())?;
+        not_negative("drop.gravity_m_s2", self.gravity_m_s2.into())?;
+        for extent in self.ground_extents_m {
+            positive("drop.ground_extents_m", extent)?;
+        }
+        for &frequency in &self.frequencies_hz {
+            positive("drop.frequencies_hz", frequency.into())?;
+        }
+        let [from, to] = self.measured_s;
+        if !(0.0 <= from && from < to && to <= self.duration_s) {
+            return Err(format!(
+                "drop.measured_s must grow and end by drop.duration_s = {}, but are {from}, {to}",
+                self.duration_s
+            ));
+        }
+        if self.orientations == 0 || self.quick_orientations == 0 {
+            return Err("drop.orientations and drop.quick_orientations must be 1 or more".into());
+        }
+        if self.algorithms.is_empty() || self.frequencies_hz.is_empty() {
+            return Err("drop.algorithms and drop.frequencies_hz must not be empty".into());
+        }
+        for (i, name) in self.algorithms.iter().enumerate() {
+            if self.algorithms[..i].contains(name) {
+                return Err(format!("drop.algorithms: `{name}` stands twice"));
+            }
+        }
+        let named = self.paper_value.iter().map(|value| &value.algorithm);
+        for name in named.chain(&self.reference) {
+            if !self.algorithms.contains(name) {
+                return Err(format!("`{name}` is none of drop.algorithms"));
+            }
+        }
+        Ok(())
+    }
+
+    fn algorithms(&self) -> Vec<&str> {
+        self.algorithms.iter().map(String::as_str).collect()
+    }
+
+    fn jobs(&self, quick: bool) -> Vec<Job> {
+        let seeds = if quick {
+            self.quick_orientations
+        } else {
+            self.orientations
+        };
+        let mut jobs = Vec::new();
+        for seed in 0..seeds {
+            for &frequency in &self.frequencies_hz {
+                for algorithm in &self.algorithms {
+                    jobs.push(Job {
+                        case: Self::case(frequency),
+                        algorithm: algorithm.clone(),
+                        seed,
+                    });
+                }
+            }
+        }
+        jobs
+    }
+
+    fn settings(&self) -> Result<String, Error> {
+        let of_jobs = Self {
+            frequencies_hz: Vec::new(),
+            orientations: 0,
+            quick_orientations: 0,
+            measured_s: [0.0; 2],
+            algorithms: Vec::new(),
+            reference: None,
+            show: Vec::new(),
+            paper_value: Vec::new(),
+            ..self.clone()
+        };
+        Ok(serde_json::to_string(&of_jobs)?)
+    }
+
+    fn identity(&self, lab: &Lab) -> Result<String, String> {
+        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    }
+
+    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+        let body = lab.body(&self.model, self.scale)?;
+        let scene = Scene {
+            body: &body.mesh,
+            ground_extents: self.ground_extents_m,
+        };
+        let ready = lab.ready(&job.algorithm, &body.identity, &scene)?;
+        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let frequency = self
+            .frequencies_hz
+            .iter()
+            .find(|f| Self::case(**f) == job.case);
+        let frequency = *frequency.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let rows = self.simulate(&body, prepared, frequency, job.seed)?;
+        Ok(Measured {
+            rows: Rows::of(&rows)?,
+            preparation: ready.preparation.clone(),
+        })
+    }
+
+    fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
+        summary::summarize(self, rows)
+    }
+
+    fn present(
+        &self,
+        tables: &Tables,
+        algorithms: &Algorithms,
+        folder: &Path,
+    ) -> Result<Vec<Block>, Error> {
+        show::present(self, tables, algorithms, folder)
+    }
+}

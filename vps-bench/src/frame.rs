@@ -1,0 +1,189 @@
+//! Tables of columns, from CSV files and back.
+
+use std::path::{Path, PathBuf};
+
+use polars::prelude::*;
+use vps_build::{FileError, write_atomically};
+
+/// Why a table cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FrameError {
+    #[error("{}: {source}", path.display())]
+    Csv { path: PathBuf, source: csv::Error },
+    #[error("{}: {source}", path.display())]
+    Polars { path: PathBuf, source: PolarsError },
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// Columns by name, as they come from a file: all text.
+#[derive(Default)]
+pub(crate) struct Columns {
+    names: Vec<String>,
+    values: Vec<Vec<String>>,
+}
+
+impl Columns {
+    /// Appends the rows of a CSV file behind some that are the same in all of them.
+    ///
+    /// # Errors
+    /// When it has other columns than those before.
+    pub(crate) fn append(
+        &mut self,
+        path: &Path,
+        same: &[(&str, String)],
+    ) -> Result<(), FrameError> {
+        let csv_error = |source| FrameError::Csv {
+            path: path.into(),
+            source,
+        };
+        let mut reader = csv::Reader::from_path(path).map_err(csv_error)?;
+        let own = reader.headers().map_err(csv_error)?.clone();
+        let fixed = same.iter().map(|(name, _)| (*name).to_owned());
+        let names: Vec<_> = fixed.chain(own.iter().map(String::from)).collect();
+        if self.names.is_empty() {
+            self.values = names.iter().map(|_| Vec::new()).collect();
+            self.names = names;
+        } else if self.names != names {
+            let what = format!("has columns {names:?}, the others {:?}", self.names);
+            return Err(csv_error(std::io::Error::other(what).into()));
+        }
+        for record in reader.records() {
+            let record = record.map_err(csv_error)?;
+            let fixed = same.iter().map(|(_, value)| value.as_str());
+            for (column, value) in self.values.iter_mut().zip(fixed.chain(&record)) {
+                column.push(value.to_owned());
+            }
+        }
+        Ok(())
+    }
+
+    /// With numbers where a column has nothing else; empty fields are missing values.
+    pub(crate) fn into_frame(self) -> PolarsResult<DataFrame> {
+        let rows = self.values.first().map_or(0, Vec::len);
+        let columns = self.names.into_iter().zip(self.values);
+        let columns = columns.map(|(name, values)| column(&name, &values));
+        DataFrame::new(rows, columns.collect())
+    }
+}
+
+fn column(name: &str, values: &[String]) -> Column {
+    let number = |text: &String| {
+        if text.is_empty() {
+            Some(None)
+        } else {
+            text.parse::<f64>().ok().map(Some)
+        }
+    };
+    let numbers: Option<Vec<Option<f64>>> = values.iter().map(number).collect();
+    match numbers {
+        Some(numbers) => Column::new(name.into(), numbers),
+        None => Column::new(name.into(), values),
+    }
+}
+
+/// Reads a CSV file.
+pub(crate) fn read(path: &Path) -> Result<DataFrame, FrameError> {
+    let mut columns = Columns::default();
+    columns.append(path, &[])?;
+    columns.into_frame().map_err(|source| FrameError::Polars {
+        path: path.into(),
+        source,
+    })
+}
+
+/// Writes a CSV file; all columns must be numbers or text.
+pub(crate) fn write(path: &Path, frame: &DataFrame) -> Result<(), FrameError> {
+    let csv_error = |source| FrameError::Csv {
+        path: path.into(),
+        source,
+    };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer
+        .write_record(frame.get_column_names().into_iter().map(|n| n.as_str()))
+        .map_err(csv_error)?;
+    for row in 0..frame.height() {
+        let fields = frame.columns().iter().map(|c| text(c, row));
+        writer.write_record(fields).map_err(csv_error)?;
+    }
+    let bytes = writer
+        .into_inner()
+        .map_err(|e| csv_error(e.into_error().into()))?;
+    Ok(write_atomically(path, &bytes)?)
+}
+
+/// A value as text; empty if missing.
+fn text(column: &Column, row: usize) -> String {
+    match column.get(row) {
+        Ok(AnyValue::Null) | Err(_) => String::new(),
+        Ok(AnyValue::Float64(value)) => format!("{value}"),
+        Ok(value) => value.str_value().into_owned(),
+    }
+}
+
+/// The rows of a table, one by one.
+pub(crate) fn rows(frame: &DataFrame) -> impl Iterator<Item = Row<'_>> {
+    (0..frame.height()).map(|index| Row { frame, index })
+}
+
+/// A row of a table.
+#[derive(Clone, Copy)]
+pub(crate) struct Row<'f> {
+    frame: &'f DataFrame,
+    index: usize,
+}
+
+impl<'f> Row<'f> {
+    /// A number; `None` if there is none in that column.
+    pub(crate) fn number(&self, column: &str) -> Option<f64> {
+        let values = self.frame.column(column).ok()?;
+        values.get(self.index).ok()?.try_extract::<f64>().ok()
+    }
+
+    /// Text, or a number as text; empty if there is none.
+    pub(crate) fn text(&self, column: &str) -> String {
+        let values = self.frame.column(column);
+        values.map_or_else(|_| String::new(), |values| text(values, self.index))
+    }
+
+    /// Whether some columns hold what is given.
+    pub(crate) fn matches<'c>(
+        &self,
+        wanted: impl IntoIterator<Item = (&'c String, &'c String)>,
+    ) -> bool {
+        wanted
+            .into_iter()
+            .all(|(column, value)| self.text(column) == *value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_survives_its_file() {
+        let folder = std::env::temp_dir().join(format!("vps-frame-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let (a, b) = (folder.join("a.csv"), folder.join("b.csv"));
+        let frame = df!("what" => ["x", "y, z"], "n" => [Some(1.5), None], "m" => [1.0, 2e-9]);
+        let frame = frame.unwrap();
+        write(&a, &frame).unwrap();
+        let back = read(&a).unwrap();
+        assert!(back.equals_missing(&frame), "{back}");
+        let row = rows(&back).nth(1).unwrap();
+        assert_eq!(row.text("what"), "y, z");
+        assert_eq!((row.number("n"), row.number("m")), (None, Some(2e-9)));
+        assert_eq!((row.number("what"), row.number("none")), (None, None));
+
+        let mut columns = Columns::default();
+        columns.append(&a, &[("job", "1".into())]).unwrap();
+        columns.append(&a, &[("job", "2".into())]).unwrap();
+        std::fs::write(&b, "other\n1\n").unwrap();
+        assert!(columns.append(&b, &[("job", "3".into())]).is_err());
+        let both = columns.into_frame().unwrap();
+        assert_eq!(both.height(), 4);
+        assert_eq!(rows(&both).nth(2).unwrap().number("job"), Some(2.0));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,68 @@
+//! What there is to do.
+
+use serde::{Deserialize, Serialize};
+
+/// One algorithm in one case of an experiment, started from one seed.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) struct Job {
+    /// Such as a frequency; part of a file's name, as is the algorithm.
+    pub(crate) case: String,
+    pub(crate) algorithm: String,
+    pub(crate) seed: u32,
+}
+
+impl Job {
+    /// What the job is called in its experiment.
+    pub(crate) fn id(&self) -> String {
+        format!("{}.{}.{}", self.case, self.algorithm, self.seed)
+    }
+}
+
+/// A part of all jobs: those whose number, from 1, gives `index` when counted round to `count`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// All of it.
+    pub(crate) const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// Whether the job of a number, from 0, belongs to it.
+    pub(crate) fn has(self, job: usize) -> bool {
+        job % self.count == self.index - 1
+    }
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/');
+        let numbers = parts.and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        match numbers {
+            Some((index, count)) if 1 <= index && index <= count => Ok(Self { index, count }),
+            _ => Err(format!(
+                "`{text}` is not like 2/3, the second of three parts"
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_share_all_jobs() {
+        let shards: Vec<Shard> = ["1/3", "2/3", "3/3"].map(|s| s.parse().unwrap()).into();
+        for job in 0..20 {
+            assert_eq!(shards.iter().filter(|s| s.has(job)).count(), 1);
+            assert!(Shard::WHOLE.has(job));
+        }
+        for wrong in ["0/3", "4/3", "1", "1/0", "a/b", "1/3/3"] {
+            assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The report: made from the small tables of all experiments alone.
+
+mod markdown;
+
+use std::path::Path;
+
+use vps_build::write_atomically;
+
+use crate::algorithms::Algorithms;
+use crate::claims::{Tables, Verdict};
+use crate::config::ExperimentFile;
+use crate::experiments::Error;
+use crate::frame;
+use crate::page::{Block, Section};
+use crate::run::MadeWith;
+
+/// The tables of an experiment and what they were made with.
+pub(crate) struct Results {
+    pub(crate) name: String,
+    pub(crate) made_with: MadeWith,
+    pub(crate) tables: Tables,
+}
+
+impl Results {
+    /// Reads what a run left in the folder of an experiment.
+    pub(crate) fn read(name: &str, folder: &Path) -> Result<Self, Error> {
+        let path = folder.join("made_with.json");
+        let text = std::fs::read(&path)
+            .map_err(|e| format!("{}: {e}: has the experiment been run?", path.display()))?;
+        let made_with = serde_json::from_slice(&text)
+            .map_err(|e| format!("{}: {e}: run the experiment again", path.display()))?;
+        let mut tables = Tables::new();
+        for entry in std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|e| e == "csv")
+                && let Some(stem) = path.file_stem()
+            {
+                tables.insert(stem.to_string_lossy().into_owned(), frame::read(&path)?);
+            }
+        }
+        Ok(Self {
+            name: name.into(),
+            made_with,
+            tables,
+        })
+    }
+
+    /// Judges the claims of `file`, which may be newer than the tables.
+    pub(crate) fn verdicts(&self, file: &ExperimentFile) -> Vec<Verdict> {
+        file.claim.iter().map(|c| c.judge(&self.tables)).collect()
+    }
+
+    /// The experiment's part of the report; figures are written into its folder.
+    fn section(
+        &self,
+        file: &ExperimentFile,
+        algorithms: &Algorithms,
+        folder: &Path,
+    ) -> Result<Section, Error> {
+        let experiment = self.made_with.experiment.kind()?;
+        let mut blocks = experiment.present(&self.tables, algorithms, folder)?;
+        if !self.made_with.failures.is_empty() {
+            let failures = self.made_with.failures.join("; ");
+            blocks.push(Block::Text(format!("What failed: {failures}.")));
+        }
+        Ok(Section {
+            name: self.name.clone(),
+            title: file.title.clone(),
+            paper: file.paper.clone(),
+            question: file.question.clone(),
+            misleads: file.misleads.clone(),
+            blocks,
+            verdicts: self.verdicts(file),
+            made_with: self.made_with(),
+            files: self
+                .tables
+                .keys()
+                .map(|name| format!("{name}.csv"))
+                .collect(),
+        })
+    }
+
+    fn made_with(&self) -> Vec<String> {
+        let environment = &self.made_with.environment;
+        let revision = match environment.revision.as_str() {
+            "" => "unknown",
+            revision => revision,
+        };
+        let mut text = vec![
+            format!(
+                "{}, {} logical cores, {} MiB, {} (kernel {})",
+                environment.processor,
+                environment.logical_cores,
+                environment.memory_mib,
+                environment.system,
+                environment.kernel
+            ),
+            format!(
+                "{}, profile {}; rapier3d {}, parry3d {}; revision {revision}",
+                environment.rustc, environment.profile, environment.rapier3d, environment.parry3d
+            ),
+            format!(
+                "taking a time costs {} ns, which every time contains",
+                environment.timer_overhead_ns
+            ),
+        ];
+        if self.made_with.quick {
+            text.push("a quick run, of few starts".into());
+        }
+        text
+    }
+}
+
+/// Writes the report on experiments, given their names and files, into `out`; gives the first table
+/// of each as Markdown.
+pub(crate) fn write(
+    experiments: &[(String, ExperimentFile)],
+    algorithms: &Algorithms,
+    out: &Path,
+) -> Result<Vec<(String, String)>, Error> {
+    let mut sections = Vec::new();
+    for (name, file) in experiments {
+        let folder = out.join(name);
+        let results = Results::read(name, &folder)?;
+        sections.push(results.section(file, algorithms, &folder)?);
+    }
+    let text = markdown::report(&sections);
+    write_atomically(&out.join("report.md"), text.as_bytes())?;
+    let first_table = |section: &Section| {
+        let table = section.blocks.iter().find_map(|block| match block {
+            Block::Table(table) => Some(table.markdown()),
+            _ => None,
+        });
+        (section.name.clone(), table.unwrap_or_default())
+    };
+    Ok(sections.iter().map(first_table).collect())
+}
+
+/// Replaces what stands in a text between the marks `<!-- name -->` and `<!-- /name -->`; `None`
+/// without them.
+pub(crate) fn spliced(text: &str, name: &str, content: &str) -> Option<String> {
+    let (open, close) = (format!("<!-- {name} -->"), format!("<!-- /{name} -->"));
+    let start = text.find(&open)? + open.len();
+    let end = start + text[start..].find(&close)?;
+    Some(format!(
+        "{}\n\n{}\n\n{}",
+        &text[..start],
+        content.trim(),
+        &text[end..]
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_stands_between_the_marks_is_replaced() {
+        let text = "a <!-- t -->old<!-- /t --> b";
+        let new = spliced(text, "t", "new\n").unwrap();
+        assert_eq!(new, "a <!-- t -->\n\nnew\n\n<!-- /t --> b");
+        assert_eq!(spliced(&new, "t", "new").unwrap(), new);
+        assert!(spliced(text, "u", "new").is_none());
+        assert!(spliced("<!-- t -->", "t", "new").is_none());
+    }
+}

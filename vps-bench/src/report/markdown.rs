@@ -1,0 +1,91 @@
+//! The report as Markdown.
+
+use std::fmt::Write;
+
+use crate::claims::Verdict;
+use crate::page::{Block, Section, Table, short};
+
+/// All sections, with a table of verdicts first.
+pub(super) fn report(sections: &[Section]) -> String {
+    let mut text = String::from("# Report\n");
+    let all: Vec<_> = sections.iter().flat_map(|s| &s.verdicts).collect();
+    if !all.is_empty() {
+        let _ = write!(text, "\n## Claims\n\n{}", verdicts(&all).markdown());
+    }
+    for section in sections {
+        let _ = write!(text, "\n{}", self::section(section));
+    }
+    text
+}
+
+fn section(section: &Section) -> String {
+    let mut text = format!(
+        "## {}\n\nPaper: {}.\n\n{}\n",
+        section.title,
+        section.paper,
+        section.question.trim()
+    );
+    for block in &section.blocks {
+        let _ = match block {
+            Block::Text(paragraph) => write!(text, "\n{}\n", paragraph.trim()),
+            Block::Table(table) => write!(text, "\n{}:\n\n{}", table.caption, table.markdown()),
+            Block::Figure(figure) => write!(
+                text,
+                "\n![{}]({}/{})\n",
+                figure.caption, section.name, figure.file
+            ),
+        };
+    }
+    if !section.verdicts.is_empty() {
+        let all: Vec<_> = section.verdicts.iter().collect();
+        let _ = write!(text, "\n{}", verdicts(&all).markdown());
+    }
+    let files = section
+        .files
+        .iter()
+        .map(|f| format!("[{f}]({}/{f})", section.name));
+    let _ = write!(
+        text,
+        "\n**How it could mislead.** {}\n\n\
+         **Made with** `vps-bench run {}`: {}. Records: {}.\n",
+        section.misleads.trim(),
+        section.name,
+        section.made_with.join("; "),
+        files.collect::<Vec<_>>().join(", ")
+    );
+    text
+}
+
+/// A row a claim.
+pub(super) fn verdicts(verdicts: &[&Verdict]) -> Table {
+    let mut table = Table::new(
+        "What becomes of the claims",
+        &["claim", "source", "paper", "here", "holds if", "verdict"],
+    );
+    for verdict in verdicts {
+        let claim = &verdict.claim;
+        let with_unit = |value: Option<f64>| match value {
+            Some(value) if !claim.unit.is_empty() => format!("{} {}", short(value), claim.unit),
+            value => short(value),
+        };
+        let source = if claim.source.is_empty() {
+            "this project".into()
+        } else {
+            claim.source.clone()
+        };
+        let outcome = if claim.why.is_empty() {
+            format!("**{}**", verdict.outcome.text())
+        } else {
+            format!("**{}**: {}", verdict.outcome.text(), claim.why)
+        };
+        table.push([
+            claim.says.clone(),
+            source,
+            with_unit(claim.paper),
+            with_unit(verdict.measured),
+            claim.range(),
+            outcome,
+        ]);
+    }
+    table
+}
