@@ -39,6 +39,7 @@ mod cache;
 mod cluster;
 mod distance;
 mod edges;
+mod exact_solid;
 mod file;
 mod halves;
 mod health;
@@ -63,9 +64,11 @@ pub use build::{
     PointCount, Resolution, Stage, build,
 };
 pub use cache::{AssetCache, BUILDER, CacheError, CachedAsset};
+pub use exact_solid::{ExactSolid, Penetration};
 pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use health::Health;
 pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
 pub use read::{Fault, MeshFormat, ReadError, parse_mesh, read_mesh};
 pub use solid::{Repairs, Sign};
+pub use triangle::closest_point;
