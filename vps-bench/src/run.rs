@@ -10,8 +10,8 @@ use vps_build::{
 };
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
-    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
-    Vps, VpsGround,
+    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Ground, Prepared, Scene,
+    Trimesh, Vps, VpsGround,
 };
 use vps_rapier::Sampling;
 
@@ -110,7 +110,7 @@ fn prepare(
 ) -> (PreparationRow, Option<Prepared>) {
     let scene = Scene {
         body: mesh,
-        ground_extents: experiment.ground.extents_m,
+        ground: Ground::Cuboid(experiment.ground.extents_m),
     };
     let used: RefCell<Vec<CachedAsset>> = RefCell::default();
     let get = |mesh: &Mesh, options: &BuildOptions| {

@@ -18,8 +18,8 @@ use vps_build::{
     write_atomically,
 };
 use vps_compare::{
-    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh, Vps,
-    VpsGround,
+    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Ground, Prepared, Scene,
+    Trimesh, Vps, VpsGround,
 };
 use vps_core::{Asset, Contact, DistanceField, PointSphereTree, Query, Trilinear, Weight, Work};
 use vps_rapier::{Sampling, VpsDispatcher, VpsShape};
@@ -62,7 +62,7 @@ fn shell(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
 fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared {
     let scene = Scene {
         body: mesh,
-        ground_extents: GROUND,
+        ground: Ground::Cuboid(GROUND),
     };
     // The body's is built once for all grounds.
     let body = bunny_options(PointCount::About(shell.tree.point_count() as u32));
@@ -199,7 +199,7 @@ fn ground(
 ) {
     let scene = Scene {
         body: bunny,
-        ground_extents: GROUND,
+        ground: Ground::Cuboid(GROUND),
     };
     let dense = || VpsGround::Voxelmap(ground_options(Density::Dense));
     let sparse = || VpsGround::Voxelmap(ground_options(Density::Sparse));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use rapier3d::math::Pose;
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build};
 use vps_compare::{
-    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Scene, Trimesh, Vps, VpsGround,
-    oracle::PlaneOracle,
+    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Ground, Scene, Trimesh, Vps,
+    VpsGround, oracle::PlaneOracle,
 };
 use vps_rapier::Sampling;
 
@@ -15,7 +15,7 @@ fn all_find_a_ball_on_a_box() {
     let ball = Mesh::icosphere(0.1, 3).unwrap();
     let scene = Scene {
         body: &ball,
-        ground_extents: [1.0, 0.2, 1.0],
+        ground: Ground::Cuboid([1.0, 0.2, 1.0]),
     };
     let options = |points| BuildOptions {
         resolution: Resolution::VoxelSize(0.01),
