@@ -36,7 +36,7 @@ use rapier3d::parry::query::{
     ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher, Unsupported,
 };
 use rapier3d::parry::shape::SharedShape;
-use vps_build::{BuildError, Mesh};
+use vps_build::Mesh;
 
 pub use convex_decomposition::ConvexDecomposition;
 pub use convex_hull::ConvexHull;
@@ -91,9 +91,6 @@ pub enum PrepareError {
     /// A mesh cannot be taken for a box.
     #[error("a mesh is no exact cuboid")]
     NotACuboid,
-    /// The mesh encloses nothing.
-    #[error(transparent)]
-    Solid(#[from] BuildError),
     /// parry refuses the triangles.
     #[error("not a triangle mesh for parry: {0}")]
     Trimesh(String),

@@ -7,8 +7,9 @@ use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, Size, parry_pair,
 
 /// Filled voxels, each a cube: the `Voxels` of parry.
 ///
-/// Every voxel that a triangle passes through is a whole cube, so that a body is up to a voxel
-/// thicker than its mesh.
+/// Every voxel that a triangle passes through is a whole cube, so that a corner of a body can be up
+/// to the diagonal of a voxel outside of its mesh. Between two such bodies parry can report contacts
+/// away from the cubes of either, and so a touch of what is apart.
 #[derive(Clone, Copy, Debug)]
 pub struct Voxels {
     /// Voxels along the longest side of a mesh, at least 1.

@@ -6,6 +6,11 @@ use rapier3d::math::{Pose, Rotation, Vector};
 use vps_build::{ExactSolid, Mesh, Sign};
 use vps_compare::oracle::SolidOracle;
 
+fn oracle(ground: &Mesh, body: &Mesh) -> SolidOracle {
+    let solid = |mesh| ExactSolid::new(mesh, Sign::Auto).unwrap();
+    SolidOracle::new(solid(ground), solid(body))
+}
+
 /// A rotation of its own for each number.
 fn turned(i: usize) -> Rotation {
     Rotation::from_scaled_axis(Vector::new(1.0, 0.6, -0.3) * (0.7 * i as f32))
@@ -17,7 +22,7 @@ fn two_balls() {
         Mesh::icosphere(1.0, 4).unwrap(),
         Mesh::icosphere(0.5, 4).unwrap(),
     );
-    let oracle = SolidOracle::new(&large, &small).unwrap();
+    let oracle = oracle(&large, &small);
     for i in 0..40 {
         let distance = 0.05 * i as f32;
         let towards = turned(2 * i) * Vector::Y;
@@ -41,7 +46,7 @@ fn two_boxes_face_to_face_are_exact() {
         Mesh::cuboid([4.0, 1.0, 4.0]).unwrap(),
         Mesh::cuboid([1.0; 3]).unwrap(),
     );
-    let oracle = SolidOracle::new(&ground, &body).unwrap();
+    let oracle = oracle(&ground, &body);
     for (height, expected) in [(1.5, -0.5), (1.25, -0.25), (0.875, 0.125), (0.75, 0.25)] {
         for turn in [0.0, 0.3, 1.1] {
             let turn = Rotation::from_rotation_y(turn);
@@ -62,7 +67,7 @@ fn a_ball_in_a_face_of_a_box_is_as_deep_as_its_lowest_point() {
         Mesh::cuboid([2.0, 2.0, 2.0]).unwrap(),
         Mesh::icosphere(0.25, 3).unwrap(),
     );
-    let oracle = SolidOracle::new(&ground, &ball).unwrap();
+    let oracle = oracle(&ground, &ball);
     for i in 0..30 {
         let height = 1.5 - 0.02 * i as f32;
         let pose = Pose::from_parts(Vector::new(0.1, height, 0.2), turned(i));
@@ -92,7 +97,7 @@ fn a_point_deep_within_a_face_is_found() {
         Mesh::new(&v, &[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]).unwrap()
     };
     let plate = Mesh::cuboid([10.0, 2.0, 10.0]).unwrap();
-    let oracle = SolidOracle::new(&thorn, &plate).unwrap();
+    let oracle = oracle(&thorn, &plate);
     let exact = oracle.penetration(&Pose::translation(1.3, 1.25, 0.7));
     assert!((exact.penetration_m - 0.15).abs() < 1e-6, "{exact:?}");
     // As a whole within the plate its foot is in the middle.
@@ -125,7 +130,7 @@ proptest! {
         ground in bumpy(), body in bumpy(), turn in 0..1000_usize, away in 0.4..1.3_f32,
     ) {
         let pose = Pose::from_parts(turned(3 * turn) * Vector::X * away, turned(turn));
-        let exact = SolidOracle::new(&ground, &body).unwrap().penetration(&pose);
+        let exact = oracle(&ground, &body).penetration(&pose);
         let body_in_ground = DPose3::from(pose);
         let solid = |mesh| ExactSolid::new(mesh, Sign::Auto).unwrap();
         let mut deepest = f64::NEG_INFINITY;

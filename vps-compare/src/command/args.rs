@@ -126,7 +126,7 @@ impl Args {
         ];
         for (name, length) in lengths {
             if let Some(length) = length
-                && !(length >= 0.0 && length.is_finite())
+                && !(length >= 0.0 && (length as f32).is_finite())
             {
                 return Err(format!("{name} must be a length in metres, not {length}").into());
             }

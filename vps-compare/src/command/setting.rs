@@ -4,7 +4,7 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 use rapier3d::math::Pose;
-use vps_build::{Mesh, read_mesh};
+use vps_build::{ExactSolid, Mesh, Sign, read_mesh};
 use vps_compare::oracle::{Exact, SolidOracle};
 
 use super::args::Args;
@@ -33,12 +33,10 @@ impl Setting {
         let mesh_b = mesh(&args.mesh_b, args.scale_b, "--scale-b")?;
         let read = args.poses.as_deref().map(poses::read).transpose()?;
         progress.set_message("sorting triangles");
-        let oracle = SolidOracle::new(&mesh_a, &mesh_b).map_err(|e| {
-            // Which of the two it is.
-            let is_a = SolidOracle::new(&mesh_a, &mesh_a).is_err();
-            let path = if is_a { &args.mesh_a } else { &args.mesh_b };
-            format!("{}: {e}", path.display())
-        })?;
+        let solid_a = solid(&args.mesh_a, &mesh_a)?;
+        let solid_b = solid(&args.mesh_b, &mesh_b)?;
+        let watertight = [&solid_a, &solid_b].map(|solid| solid.repairs().is_none());
+        let oracle = SolidOracle::new(solid_a, solid_b);
         let longest = |mesh: &Mesh| {
             let (low, high) = mesh.bounds();
             (high - low).max_element()
@@ -64,7 +62,7 @@ impl Setting {
             (pose, oracle.penetration(&pose))
         };
         Ok(Self {
-            watertight: oracle.repairs().map(|repairs| repairs.is_none()),
+            watertight,
             prediction_m: args.prediction.unwrap_or(PREDICTION * size),
             tolerance_m: args.tolerance.unwrap_or(TOLERANCE * size),
             poses: poses.into_iter().enumerate().map(exact).collect(),
@@ -78,4 +76,9 @@ fn mesh(path: &Path, scale: f64, option: &str) -> Result<Mesh, Error> {
     let mesh = read_mesh(path, None)?;
     let scaled = mesh.scaled(scale);
     Ok(scaled.map_err(|e| format!("{}: {option}: {e}", path.display()))?)
+}
+
+fn solid(path: &Path, mesh: &Mesh) -> Result<ExactSolid, Error> {
+    let solid = ExactSolid::new(mesh, Sign::Auto);
+    Ok(solid.map_err(|e| format!("{}: {e}", path.display()))?)
 }

@@ -3,11 +3,10 @@ use std::collections::BinaryHeap;
 
 use glamx::{DPose3, DVec3};
 use rapier3d::math::Pose;
-use vps_build::{ExactSolid, Mesh, Repairs, Sign, closest_point};
+use vps_build::{ExactSolid, closest_point};
 
 use super::balls::{BallTree, Holds};
 use super::triangles::squared_distance;
-use crate::PrepareError;
 
 /// The exact penetration of two solids, whatever their shape.
 ///
@@ -51,34 +50,25 @@ struct Side {
 }
 
 impl Side {
-    fn new(mesh: &Mesh) -> Result<Self, PrepareError> {
-        let solid = ExactSolid::new(mesh, Sign::Auto)?;
+    fn new(solid: ExactSolid) -> Self {
         let (low, high) = solid.surface().bounds();
-        Ok(Self {
+        Self {
             tree: BallTree::new(solid.surface()),
             size: (high - low).max_element(),
             solid,
-        })
+        }
     }
 }
 
 impl SolidOracle {
-    /// An oracle for two meshes, which are repaired as for an asset if they are not clean.
-    ///
-    /// # Errors
-    /// When one of them encloses nothing.
-    pub fn new(ground: &Mesh, body: &Mesh) -> Result<Self, PrepareError> {
-        let (ground, body) = (Side::new(ground)?, Side::new(body)?);
-        Ok(Self {
+    /// An oracle for two solids.
+    pub fn new(ground: ExactSolid, body: ExactSolid) -> Self {
+        let (ground, body) = (Side::new(ground), Side::new(body));
+        Self {
             tolerance: TOLERANCE * ground.size.min(body.size),
             ground,
             body,
-        })
-    }
-
-    /// What had to be done to the ground and to the body to make solids of them.
-    pub fn repairs(&self) -> [Repairs; 2] {
-        [&self.ground, &self.body].map(|side| side.solid.repairs())
+        }
     }
 
     /// The distance of the two solids in metres, 0 if they meet.
