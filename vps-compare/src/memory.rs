@@ -1,4 +1,3 @@
-use rapier3d::math::Vector;
 use rapier3d::parry::shape::{ConvexPolyhedron, Shape};
 
 /// What shapes take in memory.
@@ -59,7 +58,7 @@ fn bytes(shape: &dyn Shape) -> usize {
 
 fn of_hull(hull: &ConvexPolyhedron) -> usize {
     size_of_val(hull)
-        + hull.points().len() * size_of::<Vector>()
+        + size_of_val(hull.points())
         + size_of_val(hull.vertices())
         + size_of_val(hull.edges())
         + size_of_val(hull.faces())

@@ -3,6 +3,8 @@
 use glamx::{DPose3, DVec3};
 use proptest::prelude::*;
 use rapier3d::math::{Pose, Rotation, Vector};
+use rapier3d::parry::query::distance;
+use rapier3d::parry::shape::SharedShape;
 use vps_build::{ExactSolid, Mesh, Sign};
 use vps_compare::oracle::SolidOracle;
 
@@ -124,6 +126,21 @@ fn bumpy() -> impl Strategy<Value = Mesh> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
+    /// parry knows the distance of two triangle meshes too, in 32 bits.
+    #[test]
+    fn apart_it_is_the_distance_of_the_triangles(
+        ground in bumpy(), body in bumpy(), turn in 0..1000_usize, away in 0.8..2.0_f32,
+    ) {
+        let pose = Pose::from_parts(turned(3 * turn) * Vector::X * away, turned(turn));
+        let [a, b] = [&ground, &body].map(|mesh| {
+            let vertices = mesh.vertices().iter().map(|v| v.as_vec3()).collect();
+            SharedShape::trimesh(vertices, mesh.triangles().to_vec()).unwrap()
+        });
+        let expected = distance(&Pose::IDENTITY, &*a, &pose, &*b).unwrap().distance;
+        let found = oracle(&ground, &body).separation(&pose);
+        prop_assert!((found - f64::from(expected)).abs() < 1e-5, "{found}, {expected}");
+    }
+
     /// No point of either surface is deeper than the oracle says, and one is nearly as deep.
     #[test]
     fn samples_of_both_surfaces_agree(
