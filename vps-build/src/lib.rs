@@ -20,6 +20,7 @@
 //! |---|---|---|
 //! | mesh from a file | [`read_mesh`] | |
 //! | what is wrong with it | [`Health`] | |
+//! | how deep a point is in it, exactly | [`ExactSolid`] | |
 //! | a solid from any mesh | `solid`, `winding`, `solid_angle` | |
 //! | surface voxels, inside, outside | `places` | 2.1.1 |
 //! | layers | `layers` | 2.1.1 |

@@ -532,6 +532,7 @@ fn interlocked(
         ground: shape,
         dispatcher: Arc::new(VpsDispatcher::default()),
         size: Vec::new(),
+        ground_size: Vec::new(),
     };
     let mut contacts = Contacts::default();
     let mut run = || {
@@ -549,6 +550,7 @@ fn interlocked(
             ground: mesh,
             dispatcher: Arc::new(DefaultQueryDispatcher),
             size: Vec::new(),
+            ground_size: Vec::new(),
         };
         // Seconds a query: criterion would take minutes.
         let few = &poses[..2];

@@ -109,8 +109,6 @@ pub struct Prepared {
     pub size: Size,
     /// The same of a ground that was a mesh; empty if it is a box.
     pub ground_size: Size,
-    /// What the two shapes take in memory.
-    pub memory: Memory,
 }
 
 /// Numbers by name.
@@ -145,6 +143,11 @@ pub fn summary<'m>(manifolds: impl Iterator<Item = &'m ContactManifold>) -> (usi
 }
 
 impl Prepared {
+    /// What the two shapes take in memory.
+    pub fn memory(&self) -> Memory {
+        Memory::of(&*self.body).and(Memory::of(&*self.ground))
+    }
+
     /// Updates the contacts for a pose of the body in the ground's frame; contacts up to
     /// `prediction` metres apart are given as well.
     ///
@@ -178,7 +181,6 @@ fn parry_pair(
         Ground::Mesh(mesh) => make(mesh)?,
     };
     Ok(Prepared {
-        memory: Memory::estimated(&*body).and(Memory::estimated(&*ground)),
         body,
         ground,
         dispatcher: Arc::new(DefaultQueryDispatcher),

@@ -5,7 +5,7 @@ use vps_build::{BuildOptions, Mesh};
 use vps_core::Asset;
 use vps_rapier::{Role, Sampling, VpsDispatcher, VpsShape};
 
-use crate::{CollisionAlgorithm, Ground, Memory, PrepareError, Prepared, Scene, Size, cuboid};
+use crate::{CollisionAlgorithm, Ground, PrepareError, Prepared, Scene, Size, cuboid};
 
 /// The pointshell of one in the field of the other.
 pub struct Vps<'s> {
@@ -55,7 +55,6 @@ impl CollisionAlgorithm for Vps<'_> {
             VpsGround::Asset(_, role) => (role, role),
             _ => (Role::Pointshell, Role::Voxelmap),
         };
-        let memory = Memory::exact(bytes(&body) + ground.as_ref().map_or(0, bytes));
         let ground_size = match scene.ground {
             Ground::Mesh(_) => ground.as_ref().map_or(Size::new(), size),
             Ground::Cuboid(_) => Size::new(),
@@ -75,7 +74,6 @@ impl CollisionAlgorithm for Vps<'_> {
             ground,
             dispatcher: Arc::new(dispatcher.chain(DefaultQueryDispatcher)),
             ground_size,
-            memory,
         })
     }
 }
@@ -85,9 +83,4 @@ fn size(asset: &Arc<Asset<'static>>) -> Size {
         ("points", asset.tree.point_count()),
         ("levels", asset.tree.level_count() as usize),
     ]
-}
-
-/// Those of the map and the tree; the rest of an asset is a few numbers.
-fn bytes(asset: &Arc<Asset<'static>>) -> usize {
-    asset.voxelmap.store().byte_len() + asset.tree.byte_len()
 }

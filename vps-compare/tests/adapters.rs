@@ -113,7 +113,7 @@ fn all_find_a_ball_on_a_ball() {
     for (i, (algorithm, tolerance)) in algorithms.into_iter().enumerate() {
         let prepared = algorithm.prepare(&scene).unwrap();
         assert_eq!(prepared.size, prepared.ground_size);
-        assert!(prepared.memory.bytes > 1000, "algorithm {i}");
+        assert!(prepared.memory().bytes > 1000, "algorithm {i}");
         for distance in [0.5, 0.205, 0.199, 0.195] {
             let pose = Pose::translation(0.0, 0.6 * distance, 0.8 * distance);
             let mut contacts = Contacts::default();

@@ -205,6 +205,7 @@ fn poses_of_a_file_and_one_algorithm() {
     let summary: Value = serde_json::from_str(&json).unwrap();
     assert_eq!(summary["algorithms"].as_array().unwrap().len(), 1);
     assert_eq!(summary["seed"], Value::Null);
+    assert_eq!(summary["spread_m"], Value::Null);
     let mut reader = csv::Reader::from_path(&csv_path).unwrap();
     let exact: Vec<f64> = reader
         .records()

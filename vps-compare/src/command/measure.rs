@@ -70,11 +70,15 @@ pub(super) fn measure(
                 Ok(prepared) => ask(prepared, pose, setting.prediction_m as f32, repeat),
                 Err(why) => Err(why.clone()),
             };
-            let row = Row::of(number, pose, exact, setting.tolerance_m, asked);
-            rows.push(Row {
-                algorithm: candidate.name.to_string(),
-                ..row
-            });
+            let name = candidate.name.to_string();
+            rows.push(Row::of(
+                number,
+                pose,
+                exact,
+                setting.tolerance_m,
+                name,
+                asked,
+            ));
         }
     }
     rows
@@ -108,9 +112,13 @@ fn ask(prepared: &Prepared, pose: &Pose, prediction: f32, repeat: u32) -> Result
                 }
             }
         }
+        let (contacts, penetration) = summary;
+        if let Some(p) = penetration.filter(|p| !p.is_finite()) {
+            return Err(format!("the penetration is {p}"));
+        }
         Ok(Asked {
-            contacts: summary.0,
-            penetration_m: summary.1.map(f64::from),
+            contacts,
+            penetration_m: penetration.map(f64::from),
             query_ns: least.unwrap_or_default().as_nanos() as u64,
         })
     })
@@ -122,6 +130,7 @@ impl Row {
         pose: &Pose,
         exact: &Exact,
         tolerance_m: f64,
+        algorithm: String,
         asked: Result<Asked, String>,
     ) -> Self {
         let answer = |asked: &Asked| {
@@ -146,7 +155,7 @@ impl Row {
             qy: pose.rotation.y,
             qz: pose.rotation.z,
             qw: pose.rotation.w,
-            algorithm: String::new(),
+            algorithm,
             status: status.unwrap_or_else(|| "ok".into()),
             contacts: asked.as_ref().map(|a| a.contacts),
             penetration_m,

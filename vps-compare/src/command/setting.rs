@@ -16,6 +16,8 @@ pub(super) struct Setting {
     pub(super) mesh_b: Mesh,
     /// Whether each mesh was a solid as it stood.
     pub(super) watertight: [bool; 2],
+    /// Of random poses.
+    pub(super) spread_m: Option<f64>,
     pub(super) prediction_m: f64,
     pub(super) tolerance_m: f64,
     /// Of B in the frame of A, with the exact penetration.
@@ -42,11 +44,12 @@ impl Setting {
             (high - low).max_element()
         };
         let size = longest(&mesh_a).min(longest(&mesh_b));
+        let spread_m = args.spread.unwrap_or(SPREAD * size);
+        let is_random = read.is_none();
         let poses = match read {
             Some(poses) => poses,
             None => {
                 progress.set_message("moving B to where it touches A");
-                let spread_m = args.spread.unwrap_or(SPREAD * size);
                 poses::random(
                     [&mesh_a, &mesh_b],
                     &oracle,
@@ -63,6 +66,7 @@ impl Setting {
         };
         Ok(Self {
             watertight,
+            spread_m: is_random.then_some(spread_m),
             prediction_m: args.prediction.unwrap_or(PREDICTION * size),
             tolerance_m: args.tolerance.unwrap_or(TOLERANCE * size),
             poses: poses.into_iter().enumerate().map(exact).collect(),

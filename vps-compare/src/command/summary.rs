@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 use vps_build::Mesh;
-use vps_compare::Size;
+use vps_compare::{Prepared, Size};
 
 use super::algorithms::Candidate;
 use super::args::Args;
@@ -20,6 +20,7 @@ pub(super) struct Summary {
     /// The file of the poses; without it they are random.
     pub(super) poses_file: Option<String>,
     pub(super) seed: Option<u64>,
+    pub(super) spread_m: Option<f64>,
     pub(super) poses: usize,
     pub(super) apart: usize,
     pub(super) overlapping: usize,
@@ -81,6 +82,7 @@ impl Summary {
             mesh_b: MeshSummary::of(&args.mesh_b, &setting.mesh_b, b),
             poses_file: args.poses.as_ref().map(|path| path.display().to_string()),
             seed: args.poses.is_none().then_some(args.seed),
+            spread_m: setting.spread_m,
             poses: setting.poses.len(),
             apart: exact().filter(|e| e.penetration_m < 0.0).count(),
             overlapping: exact().filter(|e| e.penetration_m > 0.0).count(),
@@ -120,7 +122,7 @@ impl AlgorithmSummary {
         let failed = rows.iter().find(|row| row.status != "ok");
         let count = |answer| rows.iter().filter(|r| r.answer == Some(answer)).count();
         let prepared = candidate.prepared.as_ref().ok();
-        let memory = prepared.map(|p| p.memory);
+        let memory = prepared.map(Prepared::memory);
         Self {
             status: failed.map_or_else(|| "ok".into(), |row| row.status.clone()),
             size_a: prepared.map_or_else(Size::new, |p| p.ground_size.clone()),

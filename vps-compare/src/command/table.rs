@@ -78,14 +78,20 @@ pub(super) fn text(summary: &Summary) -> String {
 }
 
 fn of_mesh(mesh: &MeshSummary) -> String {
-    let [x, y, z] = mesh.extents_m;
+    let [x, y, z] = mesh.extents_m.map(|extent| {
+        if (0.001..1e5).contains(&extent) {
+            format!("{extent:.4}")
+        } else {
+            format!("{extent:.3e}")
+        }
+    });
     let repaired = if mesh.watertight {
         ""
     } else {
         ", not watertight: exact values are those of the repaired mesh"
     };
     format!(
-        "{}, {} triangles, {x:.4} x {y:.4} x {z:.4} m{repaired}",
+        "{}, {} triangles, {x} x {y} x {z} m{repaired}",
         mesh.file, mesh.triangles
     )
 }
