@@ -49,6 +49,9 @@ pub(crate) enum Method {
         resolution: u32,
     },
     Trimesh,
+    Voxels {
+        resolution: u32,
+    },
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]

@@ -12,7 +12,7 @@ use vps_build::{
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
     AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
-    Vps, VpsGround,
+    Voxels, Vps, VpsGround,
 };
 use vps_core::MassProperties;
 use vps_rapier::{Manifolds, Sampling};
@@ -58,6 +58,8 @@ pub(crate) struct Preparation {
     pub(crate) assets: String,
     /// Size of their files.
     pub(crate) asset_bytes: u64,
+    /// Of both shapes in memory, counted or estimated.
+    pub(crate) memory_bytes: u64,
 }
 
 impl Lab {
@@ -92,7 +94,7 @@ impl Lab {
         Ok(body)
     }
 
-    /// An algorithm of the list, prepared for a body on a box; `identity` tells bodies apart.
+    /// An algorithm of the list, prepared for a scene; `identity` tells scenes apart.
     pub(crate) fn ready(
         &self,
         algorithm: &str,
@@ -100,7 +102,7 @@ impl Lab {
         scene: &Scene<'_>,
     ) -> Result<Rc<Ready>, String> {
         let method = &self.algorithms.get(algorithm)?.method;
-        let key = format!("{algorithm} {identity} {:?}", scene.ground_extents);
+        let key = format!("{algorithm} {identity}");
         if let Some(ready) = self.ready.borrow().get(&key) {
             return Ok(ready.clone());
         }
@@ -135,10 +137,13 @@ fn prepare(method: &Method, scene: &Scene<'_>, assets: &AssetCache) -> Ready {
         }
         .prepare(scene),
         Method::Trimesh => Trimesh.prepare(scene),
+        &Method::Voxels { resolution } => Voxels { resolution }.prepare(scene),
     };
     let prepare_s = start.elapsed().as_secs_f64();
     let prepared = result.map_err(|e| e.to_string());
-    let size = prepared.iter().flat_map(|p| &p.size);
+    let size = prepared
+        .iter()
+        .flat_map(|p| p.size.iter().chain(&p.ground_size));
     let used = used.into_inner();
     let preparation = Preparation {
         prepare_s,
@@ -149,6 +154,7 @@ fn prepare(method: &Method, scene: &Scene<'_>, assets: &AssetCache) -> Ready {
         size: joined(size.map(|(what, n)| format!("{n} {what}"))),
         assets: joined(used.iter().map(|kept| kept.key.clone())),
         asset_bytes: used.iter().map(|kept| kept.file_bytes).sum(),
+        memory_bytes: prepared.as_ref().map_or(0, |p| p.memory().bytes as u64),
     };
     Ready {
         prepared,

@@ -190,6 +190,7 @@ fn job_table(records: &[JobRecord]) -> Result<DataFrame, Error> {
         "size" => text(|r| r.preparation.size.clone()),
         "assets" => text(|r| r.preparation.assets.clone()),
         "asset_bytes" => number(|r| r.preparation.asset_bytes as f64),
+        "memory_bytes" => number(|r| r.preparation.memory_bytes as f64),
         "settings" => text(|r| r.settings.clone()),
     )?)
 }

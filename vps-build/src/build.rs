@@ -311,7 +311,7 @@ fn is_dense(density: Density, voxels: f64) -> bool {
     }
 }
 
-fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
+pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
     let (low, high) = mesh.bounds();
     let extents = high - low;
     let size = match options.resolution {

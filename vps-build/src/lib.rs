@@ -20,6 +20,7 @@
 //! |---|---|---|
 //! | mesh from a file | [`read_mesh`] | |
 //! | what is wrong with it | [`Health`] | |
+//! | how deep a point is in it, exactly | [`ExactSolid`] | |
 //! | a solid from any mesh | `solid`, `winding`, `solid_angle` | |
 //! | surface voxels, inside, outside | `places` | 2.1.1 |
 //! | layers | `layers` | 2.1.1 |
@@ -39,6 +40,7 @@ mod cache;
 mod cluster;
 mod distance;
 mod edges;
+mod exact_solid;
 mod file;
 mod halves;
 mod health;
@@ -63,9 +65,11 @@ pub use build::{
     PointCount, Resolution, Stage, build,
 };
 pub use cache::{AssetCache, BUILDER, CacheError, CachedAsset};
+pub use exact_solid::{ExactSolid, Penetration};
 pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use health::Health;
 pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
 pub use read::{Fault, MeshFormat, ReadError, parse_mesh, read_mesh};
 pub use solid::{Repairs, Sign};
+pub use triangle::closest_point;

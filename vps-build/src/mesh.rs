@@ -215,7 +215,10 @@ impl Mesh {
     }
 
     /// The corners of a triangle.
-    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+    ///
+    /// # Panics
+    /// When there is no such triangle.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|v| self.vertices[v as usize])
     }
 

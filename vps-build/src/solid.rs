@@ -119,7 +119,7 @@ pub(crate) fn solid<'m>(mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Solid
 
 /// The triangles of the mesh, each once and facing outwards, without holes unless they are left
 /// open.
-fn surface<'m>(
+pub(crate) fn surface<'m>(
     mesh: &'m Mesh,
     sign: Sign,
     grid: &Grid,

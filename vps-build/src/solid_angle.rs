@@ -4,6 +4,7 @@
 //!
 //! Groups of triangles far away count as one dipole (Barill et al., 2018).
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use glamx::DVec3;
@@ -17,7 +18,7 @@ const FAR: f64 = 3.0;
 const LEAF: usize = 8;
 
 pub(crate) struct SolidAngle<'m> {
-    mesh: &'m Mesh,
+    mesh: Cow<'m, Mesh>,
     triangles: Vec<u32>,
     nodes: Vec<Node>,
 }
@@ -37,6 +38,10 @@ struct Node {
 
 impl<'m> SolidAngle<'m> {
     pub(crate) fn new(mesh: &'m Mesh) -> Self {
+        Self::of(Cow::Borrowed(mesh))
+    }
+
+    pub(crate) fn of(mesh: Cow<'m, Mesh>) -> Self {
         let count = mesh.triangles().len();
         let mut angle = Self {
             mesh,
@@ -48,7 +53,7 @@ impl<'m> SolidAngle<'m> {
     }
 
     fn add(&mut self, first: usize, count: usize) {
-        let mesh = self.mesh;
+        let mesh = &self.mesh;
         let corners = |t: &u32| mesh.corners(*t as usize);
         let triangles = &mut self.triangles[first..first + count];
         let (mut dipole, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);

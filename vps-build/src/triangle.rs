@@ -4,7 +4,7 @@ use glamx::DVec3;
 
 /// The point of the triangle closest to `p`, by the Voronoi regions of its features (Ericson,
 /// Real-Time Collision Detection, 5.1.5).
-pub(crate) fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
+pub fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {

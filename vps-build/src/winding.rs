@@ -5,6 +5,8 @@
 //! taken to pass beside it, always on the same side; so a line never slips through between two
 //! triangles, and the numbers are exact.
 
+use std::borrow::Cow;
+
 use glamx::DVec3;
 use robust::{Coord, orient2d};
 
@@ -78,7 +80,7 @@ pub(crate) fn windings(mesh: &Mesh, [xs, ys, zs]: [&[f64]; 3]) -> Vec<i16> {
 
 /// Triangles sorted into bins of lines along x, for winding numbers at single points.
 pub(crate) struct Lines<'m> {
-    mesh: &'m Mesh,
+    mesh: Cow<'m, Mesh>,
     low: DVec3,
     bin: f64,
     /// Bins along y and z.
@@ -90,12 +92,17 @@ pub(crate) struct Lines<'m> {
 
 impl<'m> Lines<'m> {
     pub(crate) fn new(mesh: &'m Mesh) -> Self {
+        Self::of(Cow::Borrowed(mesh))
+    }
+
+    pub(crate) fn of(mesh: Cow<'m, Mesh>) -> Self {
         let (low, high) = mesh.bounds();
         let extents = high - low;
         let per_side = (mesh.triangles().len() as f64).sqrt().clamp(1.0, 1024.0);
         let bin = extents.y.max(extents.z) / per_side;
         let bins = |length: f64| (length / bin) as usize + 1;
         let dims = [bins(extents.y), bins(extents.z)];
+        let count = mesh.triangles().len();
         let mut lines = Self {
             mesh,
             low,
@@ -104,7 +111,6 @@ impl<'m> Lines<'m> {
             starts: vec![0; dims[0] * dims[1] + 1],
             triangles: Vec::new(),
         };
-        let count = mesh.triangles().len();
         let mut starts = vec![0_u32; lines.starts.len()];
         for t in 0..count {
             lines.for_each_bin(t, |bin| starts[bin + 1] += 1);

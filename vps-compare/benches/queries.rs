@@ -18,11 +18,11 @@ use vps_build::{
     write_atomically,
 };
 use vps_compare::{
-    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh, Vps,
-    VpsGround,
+    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Ground, Prepared, Scene,
+    Trimesh, Vps, VpsGround,
 };
 use vps_core::{Asset, Contact, DistanceField, PointSphereTree, Query, Trilinear, Weight, Work};
-use vps_rapier::{Sampling, VpsDispatcher, VpsShape};
+use vps_rapier::{Manifolds, Sampling, VpsDispatcher, VpsShape};
 
 /// How far ahead contacts are asked for in metres: rapier's default.
 const PREDICTION: f32 = 0.02;
@@ -62,7 +62,7 @@ fn shell(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
 fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared {
     let scene = Scene {
         body: mesh,
-        ground_extents: GROUND,
+        ground: Ground::Cuboid(GROUND),
     };
     // The body's is built once for all grounds.
     let body = bunny_options(PointCount::About(shell.tree.point_count() as u32));
@@ -77,6 +77,7 @@ fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared 
         body: body.clone(),
         ground,
         sampling: Sampling::Trilinear,
+        manifolds: Manifolds::Spread,
         assets: &assets,
     };
     vps.prepare(&scene).expect("a sound scene")
@@ -199,7 +200,7 @@ fn ground(
 ) {
     let scene = Scene {
         body: bunny,
-        ground_extents: GROUND,
+        ground: Ground::Cuboid(GROUND),
     };
     let dense = || VpsGround::Voxelmap(ground_options(Density::Dense));
     let sparse = || VpsGround::Voxelmap(ground_options(Density::Sparse));
@@ -532,6 +533,7 @@ fn interlocked(
         ground: shape,
         dispatcher: Arc::new(VpsDispatcher::default()),
         size: Vec::new(),
+        ground_size: Vec::new(),
     };
     let mut contacts = Contacts::default();
     let mut run = || {
@@ -549,6 +551,7 @@ fn interlocked(
             ground: mesh,
             dispatcher: Arc::new(DefaultQueryDispatcher),
             size: Vec::new(),
+            ground_size: Vec::new(),
         };
         // Seconds a query: criterion would take minutes.
         let few = &poses[..2];

@@ -1,9 +1,10 @@
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::shape::SharedShape;
 use rapier3d::parry::transformation::vhacd::{VHACD, VHACDParameters};
+use vps_build::Mesh;
 
 use crate::few_vertices::few_hull_vertices;
-use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, parry_pair, single};
+use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, Size, parry_pair, single};
 
 /// Convex parts by VHACD, each a hull of limited size: parry's counterpart of the HACD in the
 /// paper's comparison.
@@ -22,13 +23,19 @@ pub struct ConvexDecomposition {
 
 impl CollisionAlgorithm for ConvexDecomposition {
     fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
-        let vertices = single(scene.body.vertices());
+        parry_pair(scene, |mesh| self.parts_of(mesh))
+    }
+}
+
+impl ConvexDecomposition {
+    fn parts_of(&self, mesh: &Mesh) -> Result<(SharedShape, Size), PrepareError> {
+        let vertices = single(mesh.vertices());
         let parameters = VHACDParameters {
             max_convex_hulls: self.parts as u32,
             resolution: self.resolution,
             ..VHACDParameters::default()
         };
-        let triangles = scene.body.triangles();
+        let triangles = mesh.triangles();
         let decomposition = VHACD::decompose(&parameters, &vertices, triangles, true);
         let split = decomposition.compute_exact_convex_hulls(&vertices, triangles);
         let split = split
@@ -49,7 +56,7 @@ impl CollisionAlgorithm for ConvexDecomposition {
             .filter_map(|(_, part)| part.as_convex_polyhedron());
         let vertices = hulls.map(|hull| hull.points().len()).sum();
         let size = vec![("parts", parts.len()), ("vertices", vertices)];
-        Ok(parry_pair(scene, SharedShape::compound(parts), size))
+        Ok((SharedShape::compound(parts), size))
     }
 }
 
@@ -99,8 +106,6 @@ fn merged(mut parts: Vec<Hull>, most: usize) -> Vec<Hull> {
 
 #[cfg(test)]
 mod tests {
-    use vps_build::Mesh;
-
     use super::*;
 
     #[test]

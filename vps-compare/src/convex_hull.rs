@@ -11,13 +11,14 @@ pub struct ConvexHull;
 
 impl CollisionAlgorithm for ConvexHull {
     fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
-        let points = support_points(&single(scene.body.vertices()));
-        let flat = PrepareError::Flat("convex hull");
-        let body = SharedShape::convex_hull(&points).ok_or(flat)?;
-        let vertices = body
-            .as_convex_polyhedron()
-            .map_or(0, |hull| hull.points().len());
-        Ok(parry_pair(scene, body, vec![("vertices", vertices)]))
+        parry_pair(scene, |mesh| {
+            let points = support_points(&single(mesh.vertices()));
+            let flat = PrepareError::Flat("convex hull");
+            let shape = SharedShape::convex_hull(&points).ok_or(flat)?;
+            let hull = shape.as_convex_polyhedron();
+            let vertices = hull.map_or(0, |hull| hull.points().len());
+            Ok((shape, vec![("vertices", vertices)]))
+        })
     }
 }
 

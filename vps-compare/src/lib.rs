@@ -12,6 +12,8 @@
 //! | [`ConvexDecomposition`] | VHACD parts with few vertices each |
 //! | [`Trimesh`] | nothing |
 //!
+//! | [`Voxels`] | filled voxels, each a cube |
+//!
 //! [`oracle`] says how deep a body really is.
 
 #![forbid(unsafe_code)]
@@ -19,8 +21,10 @@
 mod convex_decomposition;
 mod convex_hull;
 mod few_vertices;
+mod memory;
 pub mod oracle;
 mod trimesh;
+mod voxels;
 mod vps;
 
 use std::sync::Arc;
@@ -36,19 +40,31 @@ use vps_build::Mesh;
 
 pub use convex_decomposition::ConvexDecomposition;
 pub use convex_hull::ConvexHull;
+pub use memory::Memory;
 pub use trimesh::Trimesh;
+pub use voxels::Voxels;
 pub use vps::{AssetSource, Vps, VpsGround};
 
 /// Answers of parry in the form rapier keeps them.
 pub type Dispatcher = dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>;
 
-/// A body above a ground.
+/// Two solids: a body and a ground.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'m> {
     /// What moves: a closed mesh in metres.
     pub body: &'m Mesh,
-    /// Edge lengths in metres of the box it falls on, around the origin of the ground's frame.
-    pub ground_extents: [f64; 3],
+    /// What it meets.
+    pub ground: Ground<'m>,
+}
+
+/// What a body meets.
+#[derive(Clone, Copy, Debug)]
+pub enum Ground<'m> {
+    /// A box around the origin of the ground's frame, by its edge lengths in metres. It stays a box
+    /// whatever the algorithm.
+    Cuboid([f64; 3]),
+    /// A closed mesh in metres, which becomes what the body becomes.
+    Mesh(&'m Mesh),
 }
 
 /// A collision algorithm with its parameters.
@@ -72,6 +88,9 @@ pub enum PrepareError {
     /// The asset cannot be built.
     #[error("cannot build the asset: {0}")]
     Asset(String),
+    /// A mesh cannot be taken for a box.
+    #[error("a mesh is no exact cuboid")]
+    NotACuboid,
     /// parry refuses the triangles.
     #[error("not a triangle mesh for parry: {0}")]
     Trimesh(String),
@@ -87,8 +106,13 @@ pub struct Prepared {
     /// Who answers queries about the two.
     pub dispatcher: Arc<Dispatcher>,
     /// What the body is made of now, such as a number of points, by name.
-    pub size: Vec<(&'static str, usize)>,
+    pub size: Size,
+    /// The same of a ground that was a mesh; empty if it is a box.
+    pub ground_size: Size,
 }
+
+/// Numbers by name.
+pub type Size = Vec<(&'static str, usize)>;
 
 /// Contacts of a pair, kept from query to query as an engine does.
 #[derive(Default)]
@@ -119,6 +143,11 @@ pub fn summary<'m>(manifolds: impl Iterator<Item = &'m ContactManifold>) -> (usi
 }
 
 impl Prepared {
+    /// What the two shapes take in memory.
+    pub fn memory(&self) -> Memory {
+        Memory::of(&*self.body).and(Memory::of(&*self.ground))
+    }
+
     /// Updates the contacts for a pose of the body in the ground's frame; contacts up to
     /// `prediction` metres apart are given as well.
     ///
@@ -141,15 +170,28 @@ impl Prepared {
     }
 }
 
-/// A pair of parry's own shapes.
-fn parry_pair(scene: &Scene<'_>, body: SharedShape, size: Vec<(&'static str, usize)>) -> Prepared {
-    let [x, y, z] = scene.ground_extents.map(|e| 0.5 * e as f32);
-    Prepared {
+/// A pair of parry's own shapes, each made of its mesh in the same way.
+fn parry_pair(
+    scene: &Scene<'_>,
+    make: impl Fn(&Mesh) -> Result<(SharedShape, Size), PrepareError>,
+) -> Result<Prepared, PrepareError> {
+    let (body, size) = make(scene.body)?;
+    let (ground, ground_size) = match scene.ground {
+        Ground::Cuboid(extents) => (cuboid(extents), Size::new()),
+        Ground::Mesh(mesh) => make(mesh)?,
+    };
+    Ok(Prepared {
         body,
-        ground: SharedShape::cuboid(x, y, z),
+        ground,
         dispatcher: Arc::new(DefaultQueryDispatcher),
         size,
-    }
+        ground_size,
+    })
+}
+
+fn cuboid(extents: [f64; 3]) -> SharedShape {
+    let [x, y, z] = extents.map(|e| 0.5 * e as f32);
+    SharedShape::cuboid(x, y, z)
 }
 
 fn single(vertices: &[DVec3]) -> Vec<Vector> {

@@ -10,10 +10,12 @@ pub struct Trimesh;
 
 impl CollisionAlgorithm for Trimesh {
     fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
-        let triangles = scene.body.triangles().to_vec();
-        let count = triangles.len();
-        let body = SharedShape::trimesh(single(scene.body.vertices()), triangles)
-            .map_err(|e| PrepareError::Trimesh(e.to_string()))?;
-        Ok(parry_pair(scene, body, vec![("triangles", count)]))
+        parry_pair(scene, |mesh| {
+            let triangles = mesh.triangles().to_vec();
+            let size = vec![("triangles", triangles.len())];
+            let shape = SharedShape::trimesh(single(mesh.vertices()), triangles)
+                .map_err(|e| PrepareError::Trimesh(e.to_string()))?;
+            Ok((shape, size))
+        })
     }
 }

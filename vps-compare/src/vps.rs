@@ -1,14 +1,13 @@
 use std::sync::Arc;
 
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::SharedShape;
 use vps_build::{BuildOptions, Mesh};
 use vps_core::Asset;
 use vps_rapier::{Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
 
-use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene};
+use crate::{CollisionAlgorithm, Ground, PrepareError, Prepared, Scene, Size, cuboid};
 
-/// Pointshell of the body against the ground.
+/// The pointshell of one in the field of the other.
 pub struct Vps<'s> {
     /// How the body's asset is built.
     pub body: BuildOptions,
@@ -28,8 +27,11 @@ pub type AssetSource<'s> = dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'sta
 /// The ground of [`Vps`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum VpsGround {
-    /// A voxelmap of the box, as in the paper.
+    /// A voxelmap, as in the paper; the body is the shell.
     Voxelmap(BuildOptions),
+    /// An asset with a role like the body: with [`Role::Mixed`] the one with fewer points is the
+    /// shell, as in section 3.2, with [`Role::Both`] either is.
+    Asset(BuildOptions, Role),
     /// The box itself.
     Cuboid,
 }
@@ -39,31 +41,48 @@ impl CollisionAlgorithm for Vps<'_> {
         let asset =
             |mesh: &Mesh, options| (self.assets)(mesh, options).map_err(PrepareError::Asset);
         let body = asset(scene.body, &self.body)?;
-        let size = vec![
-            ("points", body.tree.point_count()),
-            ("levels", body.tree.level_count() as usize),
-        ];
         let ground = match &self.ground {
-            VpsGround::Voxelmap(options) => {
-                let flat = |_| PrepareError::Flat("ground");
-                let mesh = Mesh::cuboid(scene.ground_extents).map_err(flat)?;
-                let ground = VpsShape::new(asset(&mesh, options)?);
-                ground.with_role(Role::Voxelmap).into()
+            VpsGround::Voxelmap(options) | VpsGround::Asset(options, _) => {
+                Some(match scene.ground {
+                    Ground::Cuboid(extents) => {
+                        let flat = |_| PrepareError::Flat("ground");
+                        asset(&Mesh::cuboid(extents).map_err(flat)?, options)?
+                    }
+                    Ground::Mesh(mesh) => asset(mesh, options)?,
+                })
             }
-            VpsGround::Cuboid => {
-                let [x, y, z] = scene.ground_extents.map(|e| 0.5 * e as f32);
-                SharedShape::cuboid(x, y, z)
-            }
+            VpsGround::Cuboid => None,
+        };
+        let (body_role, ground_role) = match self.ground {
+            VpsGround::Asset(_, role) => (role, role),
+            _ => (Role::Pointshell, Role::Voxelmap),
+        };
+        let ground_size = match scene.ground {
+            Ground::Mesh(_) => ground.as_ref().map_or(Size::new(), size),
+            Ground::Cuboid(_) => Size::new(),
+        };
+        let ground = match (ground, scene.ground) {
+            (Some(asset), _) => VpsShape::new(asset).with_role(ground_role).into(),
+            (None, Ground::Cuboid(extents)) => cuboid(extents),
+            (None, Ground::Mesh(_)) => return Err(PrepareError::NotACuboid),
         };
         let dispatcher = VpsDispatcher {
             sampling: self.sampling,
             manifolds: self.manifolds,
         };
         Ok(Prepared {
-            body: VpsShape::new(body).with_role(Role::Pointshell).into(),
+            size: size(&body),
+            body: VpsShape::new(body).with_role(body_role).into(),
             ground,
             dispatcher: Arc::new(dispatcher.chain(DefaultQueryDispatcher)),
-            size,
+            ground_size,
         })
     }
+}
+
+fn size(asset: &Arc<Asset<'static>>) -> Size {
+    vec![
+        ("points", asset.tree.point_count()),
+        ("levels", asset.tree.level_count() as usize),
+    ]
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock};
 use rapier3d::prelude::*;
 use vps_build::models::{Thread, bolt, gear, link, nut, peg, torus};
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, build, read_mesh};
-use vps_compare::{CollisionAlgorithm, ConvexDecomposition, Scene, Trimesh};
+use vps_compare::{CollisionAlgorithm, ConvexDecomposition, Ground, Scene, Trimesh};
 use vps_core::Asset;
 use vps_rapier::VpsShape;
 
@@ -84,7 +84,7 @@ impl Model {
         };
         let scene = Scene {
             body: mesh,
-            ground_extents: [1.0; 3],
+            ground: Ground::Cuboid([1.0; 3]),
         };
         let decomposition = ConvexDecomposition {
             parts,

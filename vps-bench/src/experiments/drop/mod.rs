@@ -8,7 +8,7 @@ use std::path::Path;
 
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
-use vps_compare::Scene;
+use vps_compare::{Ground, Scene};
 
 use super::{Error, Experiment, Measured};
 use crate::algorithms::Algorithms;
@@ -197,9 +197,10 @@ impl Experiment for Settings {
         let body = lab.body(&self.model, self.scale)?;
         let scene = Scene {
             body: &body.mesh,
-            ground_extents: self.ground_extents_m,
+            ground: Ground::Cuboid(self.ground_extents_m),
         };
-        let ready = lab.ready(&job.algorithm, &body.identity, &scene)?;
+        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
+        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
         let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
         let frequency = self
             .frequencies_hz

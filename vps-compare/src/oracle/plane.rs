@@ -1,5 +1,3 @@
-//! How deep a body really is.
-
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::transformation::try_convex_hull;
 use vps_build::Mesh;

@@ -1,0 +1,136 @@
+use std::fmt;
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+
+use super::Error;
+
+/// Compares collision algorithms on two meshes: how fast, how large, how wrong.
+///
+/// Each algorithm is asked for the contacts of mesh B with mesh A, pose by pose, and its deepest
+/// contact is compared with the exact penetration of the two solids.
+#[derive(Parser)]
+#[command(version)]
+pub(crate) struct Args {
+    /// One mesh: .obj, .ply, .stl or .off
+    pub(super) mesh_a: PathBuf,
+    /// The other mesh, which takes the poses
+    pub(super) mesh_b: PathBuf,
+    /// A CSV file of poses of B in the frame of A, with the columns x_m, y_m, z_m, qx, qy, qz, qw
+    /// [default: random ones]
+    #[arg(long, value_name = "POSES.csv")]
+    pub(super) poses: Option<PathBuf>,
+    /// How many random poses: orientation and direction are random, and B is moved along the
+    /// direction to where it first touches A, and from there evenly up to the spread away from A or
+    /// into it
+    #[arg(long, value_name = "N", default_value_t = 50, conflicts_with = "poses")]
+    pub(super) random: usize,
+    /// What the random poses start from
+    #[arg(long, default_value_t = 1, conflicts_with = "poses")]
+    pub(super) seed: u64,
+    /// How far random poses are from touching, in metres [default: 5 % of the longest side of the
+    /// smaller mesh]
+    #[arg(long, value_name = "METRES", conflicts_with = "poses")]
+    pub(super) spread: Option<f64>,
+    /// Metres a unit of mesh A is long
+    #[arg(long, default_value_t = 1.0)]
+    pub(super) scale_a: f64,
+    /// Metres a unit of mesh B is long
+    #[arg(long, default_value_t = 1.0)]
+    pub(super) scale_b: f64,
+    /// How far ahead contacts are asked for, in metres [default: 2 % of the longest side of the
+    /// smaller mesh]
+    #[arg(long, value_name = "METRES")]
+    pub(super) prediction: Option<f64>,
+    /// How deep or how far apart solids must be for a wrong answer to count, in metres [default:
+    /// 0.1 % of the longest side of the smaller mesh]
+    #[arg(long, value_name = "METRES")]
+    pub(super) tolerance: Option<f64>,
+    /// Only this algorithm; may be given several times
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub(super) algorithm: Vec<Name>,
+    /// Points of each pointshell of VPS, to within 2 %
+    #[arg(long, default_value_t = 10_000)]
+    pub(super) points: u32,
+    /// Voxels along the longest side of a mesh, of VPS and of parry's voxels
+    #[arg(long, default_value_t = 100)]
+    pub(super) voxels: u32,
+    /// Most parts of a convex decomposition, of up to 100 vertices each
+    #[arg(long, default_value_t = 8)]
+    pub(super) parts: usize,
+    /// How often each query is timed, at most; the least counts
+    #[arg(long, default_value_t = 5)]
+    pub(super) repeat: u32,
+    /// Where a row for each pose and algorithm goes
+    #[arg(long, value_name = "FILE")]
+    pub(super) csv: Option<PathBuf>,
+    /// The summary for machines
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// An algorithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(super) enum Name {
+    /// The pointshell with fewer points in the voxelmap of the other, and the other way round if
+    /// the other is thin
+    Vps,
+    /// Each pointshell in the voxelmap of the other
+    VpsBoth,
+    /// A convex hull of up to 42 vertices for each mesh
+    ConvexHull,
+    /// Convex parts for each mesh, by VHACD
+    ConvexDecomposition,
+    /// The triangles
+    Trimesh,
+    /// Filled voxels, as parry has them
+    Voxels,
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Vps => "vps",
+            Self::VpsBoth => "vps_both",
+            Self::ConvexHull => "convex_hull",
+            Self::ConvexDecomposition => "convex_decomposition",
+            Self::Trimesh => "trimesh",
+            Self::Voxels => "voxels",
+        })
+    }
+}
+
+impl Args {
+    /// Those asked for, each once, in the order of the table.
+    pub(super) fn algorithms(&self) -> impl Iterator<Item = Name> {
+        let all = Name::value_variants().iter().copied();
+        all.filter(|name| self.algorithm.is_empty() || self.algorithm.contains(name))
+    }
+
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let counts = [
+            ("--random", self.random as u64),
+            ("--repeat", u64::from(self.repeat)),
+            ("--points", u64::from(self.points)),
+            ("--voxels", u64::from(self.voxels)),
+            ("--parts", self.parts as u64),
+        ];
+        if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
+            return Err(format!("{name} must be at least 1").into());
+        }
+        let lengths = [
+            ("--spread", self.spread),
+            ("--prediction", self.prediction),
+            ("--tolerance", self.tolerance),
+        ];
+        for (name, length) in lengths {
+            if let Some(length) = length
+                && !(length >= 0.0 && (length as f32).is_finite())
+            {
+                return Err(format!("{name} must be a length in metres, not {length}").into());
+            }
+        }
+        Ok(())
+    }
+}

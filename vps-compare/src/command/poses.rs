@@ -1,0 +1,137 @@
+//! Poses of B in the frame of A, from a file or at random.
+
+use std::f32::consts::TAU;
+use std::path::Path;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rapier3d::math::{Pose, Rotation, Vector};
+use vps_build::Mesh;
+use vps_compare::oracle::SolidOracle;
+
+use super::Error;
+
+const COLUMNS: [&str; 7] = ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"];
+
+/// By how much the length of a rotation may differ from one.
+const ROUNDED: f32 = 1e-3;
+
+/// Reads a CSV file with a pose a row.
+pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
+    let name = path.display();
+    let bytes = std::fs::read(path).map_err(|e| format!("{name}: {e}"))?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(bytes.as_slice());
+    let at = |error: csv::Error| {
+        let line = error.position().map_or(1, csv::Position::line);
+        let why = match error.kind() {
+            csv::ErrorKind::UnequalLengths {
+                expected_len, len, ..
+            } => format!("{len} values where the header has {expected_len} columns"),
+            csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".into(),
+            _ => error.to_string(),
+        };
+        format!("{name}:{line}: {why}")
+    };
+    let header = reader.headers().map_err(at)?.clone();
+    let mut places = [0; 7];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        *place = header.iter().position(|h| h == column).ok_or_else(|| {
+            let all = COLUMNS.join(",");
+            format!("{name}:1: the column `{column}` is missing: the first line must name {all}")
+        })?;
+    }
+    let mut poses = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(at)?;
+        let line = record.position().map_or(1, csv::Position::line);
+        let mut values = [0.0_f32; 7];
+        for ((value, place), column) in values.iter_mut().zip(places).zip(COLUMNS) {
+            let text = &record[place];
+            let number = text.parse().ok().filter(|n: &f32| n.is_finite());
+            *value = number
+                .ok_or_else(|| format!("{name}:{line}: {column}: `{text}` is no finite number"))?;
+        }
+        let [x, y, z, qx, qy, qz, qw] = values;
+        let rotation = Rotation::from_xyzw(qx, qy, qz, qw);
+        let length = rotation.length();
+        if (length - 1.0).abs() > ROUNDED {
+            return Err(format!(
+                "{name}:{line}: qx, qy, qz, qw is no rotation: its length must be 1, not {length}"
+            )
+            .into());
+        }
+        poses.push(Pose::from_parts(Vector::new(x, y, z), rotation.normalize()));
+    }
+    if poses.is_empty() {
+        return Err(format!("{name}: no pose: give at least one row below the header").into());
+    }
+    Ok(poses)
+}
+
+/// How often a direction is drawn in which the solids do not meet before that is given up.
+const MOST_DRAWS: usize = 1000;
+
+/// How close to touching is close enough, as a part of the size of both.
+const TOUCHING: f64 = 1e-5;
+
+/// Poses around those where B touches A. Orientation and direction are random; B comes from afar
+/// along the direction to where it first touches A. From there it goes on by a distance or back: the
+/// i-th of `count` poses by a random one of the i-th of `count` equal parts of -`spread_m` to
+/// `spread_m`.
+pub(super) fn random(
+    [mesh_a, mesh_b]: [&Mesh; 2],
+    oracle: &SolidOracle,
+    count: usize,
+    seed: u64,
+    spread_m: f64,
+) -> Result<Vec<Pose>, Error> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let middle = |mesh: &Mesh| {
+        let (low, high) = mesh.bounds();
+        (low.midpoint(high), 0.5 * (high - low).length())
+    };
+    let ((center_a, radius_a), (center_b, radius_b)) = (middle(mesh_a), middle(mesh_b));
+    let far = radius_a + radius_b;
+    let mut poses = Vec::new();
+    let mut draws = 0;
+    while poses.len() < count {
+        draws += 1;
+        if draws > MOST_DRAWS + count {
+            return Err("no random pose lets the meshes touch: give poses by --poses".into());
+        }
+        let turn = rotation([rng.random(), rng.random(), rng.random()]);
+        let towards = rotation([rng.random(), rng.random(), rng.random()]) * Vector::X;
+        let part: f64 = rng.random();
+        let at = |away: f64| {
+            let center = center_a.as_vec3() + towards * away as f32;
+            Pose::from_parts(center - turn * center_b.as_vec3(), turn)
+        };
+        // Along a line the solids cannot meet before they have come as close as they are apart.
+        let mut away = far;
+        let touches = loop {
+            let separation = oracle.separation(&at(away));
+            if separation <= TOUCHING * far {
+                break true;
+            }
+            away -= separation;
+            if away < -far {
+                break false;
+            }
+        };
+        if touches {
+            let share = (poses.len() as f64 + part) / count as f64;
+            poses.push(at(away + spread_m * (1.0 - 2.0 * share)));
+        }
+    }
+    Ok(poses)
+}
+
+/// A rotation out of all with the same chance (Shoemake, 1992).
+fn rotation([u, v, w]: [f32; 3]) -> Rotation {
+    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+    let ((sv, cv), (sw, cw)) = ((TAU * v).sin_cos(), (TAU * w).sin_cos());
+    Rotation::from_xyzw(a * sv, a * cv, b * sw, b * cw)
+}

@@ -1,0 +1,88 @@
+//! The two meshes, the poses, and what is true of them.
+
+use std::path::Path;
+
+use indicatif::ProgressBar;
+use rapier3d::math::Pose;
+use vps_build::{ExactSolid, Mesh, Sign, read_mesh};
+use vps_compare::oracle::{Exact, SolidOracle};
+
+use super::args::Args;
+use super::{Error, poses};
+
+/// All that is the same for all algorithms.
+pub(super) struct Setting {
+    pub(super) mesh_a: Mesh,
+    pub(super) mesh_b: Mesh,
+    /// Whether each mesh was a solid as it stood.
+    pub(super) watertight: [bool; 2],
+    /// Of random poses.
+    pub(super) spread_m: Option<f64>,
+    pub(super) prediction_m: f64,
+    pub(super) tolerance_m: f64,
+    /// Of B in the frame of A, with the exact penetration.
+    pub(super) poses: Vec<(Pose, Exact)>,
+}
+
+/// Parts of the longest side of the smaller mesh.
+const SPREAD: f64 = 0.05;
+const PREDICTION: f64 = 0.02;
+const TOLERANCE: f64 = 0.001;
+
+impl Setting {
+    pub(super) fn of(args: &Args, progress: &ProgressBar) -> Result<Self, Error> {
+        let mesh_a = mesh(&args.mesh_a, args.scale_a, "--scale-a")?;
+        let mesh_b = mesh(&args.mesh_b, args.scale_b, "--scale-b")?;
+        let read = args.poses.as_deref().map(poses::read).transpose()?;
+        progress.set_message("sorting triangles");
+        let solid_a = solid(&args.mesh_a, &mesh_a)?;
+        let solid_b = solid(&args.mesh_b, &mesh_b)?;
+        let watertight = [&solid_a, &solid_b].map(|solid| solid.repairs().is_none());
+        let oracle = SolidOracle::new(solid_a, solid_b);
+        let longest = |mesh: &Mesh| {
+            let (low, high) = mesh.bounds();
+            (high - low).max_element()
+        };
+        let size = longest(&mesh_a).min(longest(&mesh_b));
+        let spread_m = args.spread.unwrap_or(SPREAD * size);
+        let is_random = read.is_none();
+        let poses = match read {
+            Some(poses) => poses,
+            None => {
+                progress.set_message("moving B to where it touches A");
+                poses::random(
+                    [&mesh_a, &mesh_b],
+                    &oracle,
+                    args.random,
+                    args.seed,
+                    spread_m,
+                )?
+            }
+        };
+        let count = poses.len();
+        let exact = |(i, pose): (usize, Pose)| {
+            progress.set_message(format!("exact penetration of pose {} of {count}", i + 1));
+            (pose, oracle.penetration(&pose))
+        };
+        Ok(Self {
+            watertight,
+            spread_m: is_random.then_some(spread_m),
+            prediction_m: args.prediction.unwrap_or(PREDICTION * size),
+            tolerance_m: args.tolerance.unwrap_or(TOLERANCE * size),
+            poses: poses.into_iter().enumerate().map(exact).collect(),
+            mesh_a,
+            mesh_b,
+        })
+    }
+}
+
+fn mesh(path: &Path, scale: f64, option: &str) -> Result<Mesh, Error> {
+    let mesh = read_mesh(path, None)?;
+    let scaled = mesh.scaled(scale);
+    Ok(scaled.map_err(|e| format!("{}: {option}: {e}", path.display()))?)
+}
+
+fn solid(path: &Path, mesh: &Mesh) -> Result<ExactSolid, Error> {
+    let solid = ExactSolid::new(mesh, Sign::Auto);
+    Ok(solid.map_err(|e| format!("{}: {e}", path.display()))?)
+}

@@ -1,0 +1,174 @@
+//! What the rows say of each algorithm.
+
+use std::path::Path;
+
+use serde::{Serialize, Serializer};
+use vps_build::Mesh;
+use vps_compare::{Prepared, Size};
+
+use super::algorithms::Candidate;
+use super::args::Args;
+use super::measure::{Answer, Row};
+use super::setting::Setting;
+
+/// Everything the command tells.
+#[derive(Serialize)]
+pub(super) struct Summary {
+    pub(super) version: &'static str,
+    pub(super) mesh_a: MeshSummary,
+    pub(super) mesh_b: MeshSummary,
+    /// The file of the poses; without it they are random.
+    pub(super) poses_file: Option<String>,
+    pub(super) seed: Option<u64>,
+    pub(super) spread_m: Option<f64>,
+    pub(super) poses: usize,
+    pub(super) apart: usize,
+    pub(super) overlapping: usize,
+    pub(super) prediction_m: f64,
+    pub(super) tolerance_m: f64,
+    pub(super) repeat: u32,
+    pub(super) exact_uncertainty_m: f64,
+    pub(super) algorithms: Vec<AlgorithmSummary>,
+}
+
+#[derive(Serialize)]
+pub(super) struct MeshSummary {
+    pub(super) file: String,
+    pub(super) triangles: usize,
+    pub(super) extents_m: [f64; 3],
+    /// Whether it was a solid as it stood; otherwise what is exact is so for the repaired one.
+    pub(super) watertight: bool,
+}
+
+/// What an algorithm is and did. Times, contacts and errors are of the queries that were answered.
+#[derive(Serialize)]
+pub(super) struct AlgorithmSummary {
+    pub(super) algorithm: String,
+    /// `ok`, or the first reason why there was no answer.
+    pub(super) status: String,
+    /// What A and B became, such as a number of points.
+    #[serde(serialize_with = "as_map")]
+    pub(super) size_a: Size,
+    #[serde(serialize_with = "as_map")]
+    pub(super) size_b: Size,
+    pub(super) prepare_s: f64,
+    pub(super) memory_bytes: Option<usize>,
+    pub(super) memory_is_estimate: Option<bool>,
+    pub(super) answered: usize,
+    pub(super) query_median_ns: Option<f64>,
+    pub(super) query_p99_ns: Option<f64>,
+    pub(super) contacts_mean: Option<f64>,
+    /// At how many poses there was a contact to compare.
+    pub(super) compared: usize,
+    pub(super) error_median_m: Option<f64>,
+    pub(super) error_max_m: Option<f64>,
+    pub(super) missed: usize,
+    pub(super) false_touches: usize,
+}
+
+impl Summary {
+    pub(super) fn of(
+        args: &Args,
+        setting: &Setting,
+        candidates: &[Candidate],
+        rows: &[Row],
+    ) -> Self {
+        let exact = || setting.poses.iter().map(|(_, exact)| exact);
+        let [a, b] = setting.watertight;
+        let algorithm = |candidate| AlgorithmSummary::of(candidate, rows);
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            mesh_a: MeshSummary::of(&args.mesh_a, &setting.mesh_a, a),
+            mesh_b: MeshSummary::of(&args.mesh_b, &setting.mesh_b, b),
+            poses_file: args.poses.as_ref().map(|path| path.display().to_string()),
+            seed: args.poses.is_none().then_some(args.seed),
+            spread_m: setting.spread_m,
+            poses: setting.poses.len(),
+            apart: exact().filter(|e| e.penetration_m < 0.0).count(),
+            overlapping: exact().filter(|e| e.penetration_m > 0.0).count(),
+            prediction_m: setting.prediction_m,
+            tolerance_m: setting.tolerance_m,
+            repeat: args.repeat,
+            exact_uncertainty_m: exact().map(|e| e.uncertainty_m).fold(0.0, f64::max),
+            algorithms: candidates.iter().map(algorithm).collect(),
+        }
+    }
+}
+
+impl MeshSummary {
+    fn of(path: &Path, mesh: &Mesh, watertight: bool) -> Self {
+        let (low, high) = mesh.bounds();
+        Self {
+            file: path.display().to_string(),
+            triangles: mesh.triangles().len(),
+            extents_m: (high - low).to_array(),
+            watertight,
+        }
+    }
+}
+
+impl AlgorithmSummary {
+    fn of(candidate: &Candidate, rows: &[Row]) -> Self {
+        let algorithm = candidate.name.to_string();
+        let rows: Vec<_> = rows.iter().filter(|r| r.algorithm == algorithm).collect();
+        let sorted = |value: &dyn Fn(&Row) -> Option<f64>| {
+            let mut values: Vec<f64> = rows.iter().filter_map(|row| value(row)).collect();
+            values.sort_by(f64::total_cmp);
+            values
+        };
+        let times = sorted(&|row| row.query_ns.map(|ns| ns as f64));
+        let errors = sorted(&|row| row.error_m);
+        let contacts = sorted(&|row| row.contacts.map(|n| n as f64));
+        let failed = rows.iter().find(|row| row.status != "ok");
+        let count = |answer| rows.iter().filter(|r| r.answer == Some(answer)).count();
+        let prepared = candidate.prepared.as_ref().ok();
+        let memory = prepared.map(Prepared::memory);
+        Self {
+            status: failed.map_or_else(|| "ok".into(), |row| row.status.clone()),
+            size_a: prepared.map_or_else(Size::new, |p| p.ground_size.clone()),
+            size_b: prepared.map_or_else(Size::new, |p| p.size.clone()),
+            prepare_s: candidate.prepare_s,
+            memory_bytes: memory.map(|m| m.bytes),
+            memory_is_estimate: memory.map(|m| m.is_estimate),
+            answered: times.len(),
+            query_median_ns: quantile(&times, 0.5),
+            query_p99_ns: quantile(&times, 0.99),
+            contacts_mean: (!contacts.is_empty())
+                .then(|| contacts.iter().sum::<f64>() / contacts.len() as f64),
+            compared: errors.len(),
+            error_median_m: quantile(&errors, 0.5),
+            error_max_m: errors.last().copied(),
+            missed: count(Answer::Missed),
+            false_touches: count(Answer::FalseTouch),
+            algorithm,
+        }
+    }
+}
+
+fn as_map<S: Serializer>(size: &Size, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(size.iter().copied())
+}
+
+/// Between the two values next to it, in proportion.
+fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
+    let place = part * (sorted.len().checked_sub(1)?) as f64;
+    let (low, high) = (
+        sorted[place.floor() as usize],
+        sorted[place.ceil() as usize],
+    );
+    Some(low + (high - low) * place.fract())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles() {
+        assert_eq!(quantile(&[], 0.5), None);
+        assert_eq!(quantile(&[7.0], 0.99), Some(7.0));
+        assert_eq!(quantile(&[1.0, 2.0, 4.0, 8.0], 0.5), Some(3.0));
+        let hundred: Vec<f64> = (0..=100).map(f64::from).collect();
+        assert_eq!(quantile(&hundred, 0.99), Some(99.0));
+    }
+}

@@ -1,0 +1,309 @@
+//! The command on two meshes made by code.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::Command;
+
+use serde_json::Value;
+use vps_build::Mesh;
+
+/// A folder of its own for a test, gone at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let name = format!("vps-compare-{name}-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        std::fs::write(self.0.join(name), text).unwrap();
+        self.path(name)
+    }
+
+    /// A cup, open at the top, and a ball.
+    fn meshes(&self) -> [String; 2] {
+        let cup = vps_build::models::cup(1);
+        let ball = Mesh::icosphere(0.25, 2).unwrap();
+        [
+            self.write("cup.obj", &obj(&cup)),
+            self.write("ball.stl", &stl(&ball)),
+        ]
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn obj(mesh: &Mesh) -> String {
+    let mut text = String::new();
+    for v in mesh.vertices() {
+        writeln!(text, "v {} {} {}", v.x, v.y, v.z).unwrap();
+    }
+    for t in mesh.triangles() {
+        let [a, b, c] = t.map(|v| v + 1);
+        writeln!(text, "f {a} {b} {c}").unwrap();
+    }
+    text
+}
+
+fn stl(mesh: &Mesh) -> String {
+    let mut text = "solid ball\n".to_owned();
+    for t in 0..mesh.triangles().len() {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for v in mesh.corners(t).map(|v| v.as_vec3()) {
+            writeln!(text, "vertex {} {} {}", v.x, v.y, v.z).unwrap();
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid ball\n"
+}
+
+/// Exit status, standard output and standard error.
+fn vps_compare(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vps-compare"));
+    let output = command.args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+const SMALL: [&str; 8] = [
+    "--points", "400", "--voxels", "20", "--repeat", "1", "--parts", "4",
+];
+const ALGORITHMS: [&str; 6] = [
+    "vps",
+    "vps_both",
+    "convex_hull",
+    "convex_decomposition",
+    "trimesh",
+    "voxels",
+];
+
+#[test]
+fn random_poses_of_all_algorithms_agree_in_table_csv_and_json() {
+    let folder = Folder::new("random");
+    let [cup, ball] = folder.meshes();
+    let csv_path = folder.path("rows.csv");
+    let common = [&cup, &ball, "--random", "12", "--csv", &csv_path];
+    let (code, json, errors) = vps_compare(&[&common[..], &SMALL, &["--json"]].concat());
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    let summary: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(summary["poses"], 12);
+    // Half of the poses are moved apart from touching, half into it.
+    assert_eq!(summary["apart"], 6);
+    assert_eq!(summary["overlapping"], 6);
+    assert_eq!(summary["mesh_a"]["watertight"], true);
+
+    let mut reader = csv::Reader::from_path(&csv_path).unwrap();
+    let columns: Vec<_> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(
+        columns.join(","),
+        "pose,x_m,y_m,z_m,qx,qy,qz,qw,algorithm,status,contacts,penetration_m,query_ns,\
+         exact_penetration_m,exact_uncertainty_m,error_m,answer"
+    );
+    let rows: Vec<Vec<String>> = reader
+        .records()
+        .map(|r| r.unwrap().iter().map(str::to_owned).collect())
+        .collect();
+    assert_eq!(rows.len(), 12 * ALGORITHMS.len());
+    let column = |name: &str| columns.iter().position(|c| c == name).unwrap();
+    let algorithms = summary["algorithms"].as_array().unwrap();
+    for (algorithm, name) in algorithms.iter().zip(ALGORITHMS) {
+        assert_eq!(algorithm["algorithm"], name);
+        assert_eq!(algorithm["status"], "ok");
+        assert_eq!(algorithm["answered"], 12);
+        let of_it: Vec<_> = rows
+            .iter()
+            .filter(|r| r[column("algorithm")] == name)
+            .collect();
+        let numbers = |name: &str| -> Vec<f64> {
+            let texts = of_it.iter().map(|r| &r[column(name)]);
+            let texts = texts.filter(|text| !text.is_empty());
+            texts.map(|text| text.parse().unwrap()).collect()
+        };
+        let errors = numbers("error_m");
+        assert_eq!(algorithm["compared"], errors.len());
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        assert!((algorithm["error_max_m"].as_f64().unwrap() - worst).abs() < 1e-12);
+        let mean = numbers("contacts").iter().sum::<f64>() / 12.0;
+        assert!((algorithm["contacts_mean"].as_f64().unwrap() - mean).abs() < 1e-9);
+        assert!(numbers("query_ns").iter().all(|ns| *ns > 0.0));
+        let missed = of_it
+            .iter()
+            .filter(|r| r[column("answer")] == "missed")
+            .count();
+        assert_eq!(algorithm["missed"], missed);
+        assert!(algorithm["prepare_s"].as_f64().unwrap() > 0.0);
+        assert!(algorithm["memory_bytes"].as_u64().unwrap() > 0);
+        assert_eq!(algorithm["memory_is_estimate"], !name.starts_with("vps"));
+    }
+    // Both shells see what the triangles do to within a voxel; the hull of a cup is no cup.
+    let error = |i: usize| algorithms[i]["error_max_m"].as_f64().unwrap();
+    assert!(error(1) < 0.1, "{}", error(1));
+
+    let (code, table, errors) = vps_compare(&[&common[..], &SMALL].concat());
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    let header = table.lines().find(|l| l.starts_with("algorithm")).unwrap();
+    for column in [
+        "prepare_s",
+        "memory_KiB",
+        "median_us",
+        "p99_us",
+        "contacts",
+        "error_max_m",
+    ] {
+        assert!(header.contains(column), "{header}");
+    }
+    for name in ALGORITHMS {
+        let is_row = |l: &&str| l.split_whitespace().next() == Some(name);
+        assert_eq!(table.lines().filter(is_row).count(), 1, "{table}");
+    }
+}
+
+#[test]
+fn poses_of_a_file_and_one_algorithm() {
+    let folder = Folder::new("poses");
+    let ball = Mesh::icosphere(0.5, 3).unwrap();
+    let ball = folder.write("ball.obj", &obj(&ball));
+    // In another order, and one that is turned.
+    let poses = folder.write(
+        "poses.csv",
+        "qw,qx,qy,qz,x_m,y_m,z_m\n1,0,0,0,1.5,0,0\n1,0,0,0,0,0.98,0\n0.6,0,0.8,0,0,0,-1.01\n",
+    );
+    let csv_path = folder.path("rows.csv");
+    let arguments = [
+        &ball,
+        &ball,
+        "--poses",
+        &poses,
+        "--algorithm",
+        "trimesh",
+        "--csv",
+        &csv_path,
+        "--json",
+    ];
+    let (code, json, _) = vps_compare(&arguments);
+    assert_eq!(code, Some(0));
+    let summary: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(summary["algorithms"].as_array().unwrap().len(), 1);
+    assert_eq!(summary["seed"], Value::Null);
+    assert_eq!(summary["spread_m"], Value::Null);
+    let mut reader = csv::Reader::from_path(&csv_path).unwrap();
+    let exact: Vec<f64> = reader
+        .records()
+        .map(|r| r.unwrap()[13].parse().unwrap())
+        .collect();
+    assert_eq!(exact.len(), 3);
+    for (found, expected) in exact.into_iter().zip([-0.5, 0.02, -0.01]) {
+        // A ball of faces is a little smaller than a ball.
+        assert!((found - expected).abs() < 0.005, "{found}, {expected}");
+    }
+}
+
+#[test]
+fn what_cannot_be_prepared_is_a_row_that_says_why() {
+    let folder = Folder::new("rows");
+    let [cup, ball] = folder.meshes();
+    let csv_path = folder.path("rows.csv");
+    // More voxels than the builder may take memory for, which parry's algorithms do not mind.
+    let arguments = [
+        &cup,
+        &ball,
+        "--random",
+        "3",
+        "--algorithm",
+        "vps",
+        "--algorithm",
+        "convex_hull",
+        "--voxels",
+        "60000",
+        "--csv",
+        &csv_path,
+    ];
+    let (code, table, errors) = vps_compare(&arguments);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    assert!(
+        table.contains("vps: 0 of 3 answered: cannot build the asset: "),
+        "{table}"
+    );
+    let rows = std::fs::read_to_string(&csv_path).unwrap();
+    assert_eq!(rows.matches("cannot build the asset").count(), 3, "{rows}");
+    assert_eq!(rows.matches(",convex_hull,ok,").count(), 3, "{rows}");
+}
+
+#[test]
+fn wrong_input_is_one_line_that_names_it() {
+    let folder = Folder::new("errors");
+    let [cup, ball] = folder.meshes();
+    let open = folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let nan = folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    let header = "x_m,y_m,z_m,qx,qy,qz,qw\n";
+    let poses = |name: &str, text: &str| folder.write(name, text);
+    let good = "0,0,0,0,0,0,1\n";
+    let missing = poses("missing.csv", "x_m,y_m,z_m,qx,qy,qz\n0,0,0,0,0,0\n");
+    let word = poses("word.csv", &format!("{header}{good}0,up,0,0,0,0,1\n"));
+    let infinite = poses("infinite.csv", &format!("{header}inf,0,0,0,0,0,1\n"));
+    let short = poses("short.csv", &format!("{header}{good}{good}0,0,0\n"));
+    let long = poses("long.csv", &format!("{header}0,0,0,0,0,0,2\n"));
+    let none = poses("none.csv", header);
+    let empty = poses("empty.csv", "");
+    let fails = |arguments: &[&str], expected: &str| {
+        let (code, out, message) = vps_compare(arguments);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert!(message.contains(expected), "{message}");
+    };
+    fails(&[&folder.path("no.obj"), &ball], "no.obj: ");
+    fails(&[&cup, &nan], "nan.obj:2: `nan`");
+    fails(&[&cup, &open], "open.obj: the mesh encloses no volume");
+    fails(&[&cup, &ball, "--scale-b", "0"], "ball.stl: --scale-b: ");
+    fails(&[&cup, &ball, "--scale-a", "1e300"], "cup.obj: ");
+    fails(&[&cup, &ball, "--random", "0"], "--random");
+    fails(&[&cup, &ball, "--repeat", "0"], "--repeat");
+    fails(&[&cup, &ball, "--prediction=-1"], "--prediction");
+    fails(
+        &[&cup, &ball, "--poses", &folder.path("no.csv")],
+        "no.csv: ",
+    );
+    fails(
+        &[&cup, &ball, "--poses", &missing],
+        "missing.csv:1: the column `qw`",
+    );
+    fails(&[&cup, &ball, "--poses", &word], "word.csv:3: y_m: `up`");
+    fails(
+        &[&cup, &ball, "--poses", &infinite],
+        "infinite.csv:2: x_m: `inf`",
+    );
+    fails(&[&cup, &ball, "--poses", &short], "short.csv:4: 3 values");
+    fails(
+        &[&cup, &ball, "--poses", &long],
+        "long.csv:2: qx, qy, qz, qw",
+    );
+    fails(&[&cup, &ball, "--poses", &none], "none.csv: no pose");
+    fails(
+        &[&cup, &ball, "--poses", &empty],
+        "empty.csv:1: the column `x_m`",
+    );
+    let in_a_file = format!("{ball}/rows.csv");
+    let hull = ["--random", "1", "--algorithm", "convex_hull"];
+    let arguments = [&[&cup, &ball, "--csv", &in_a_file][..], &hull].concat();
+    fails(&arguments, "ball.stl");
+}
