@@ -69,7 +69,7 @@ impl Archive {
         self.folder.join(format!("{}.{extension}", job.id()))
     }
 
-    /// What is known of a job; `None` if it has not been run.
+    /// What is known of a job; `None` if it has not been run, or by a version that kept something else.
     pub(crate) fn record(&self, job: &Job) -> Result<Option<JobRecord>, ArchiveError> {
         let path = self.path(job, "json");
         let bytes = match std::fs::read(&path) {
@@ -77,8 +77,7 @@ impl Archive {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(record_error(&path, &error)),
         };
-        let record = serde_json::from_slice(&bytes).map_err(|e| record_error(&path, &e))?;
-        Ok(Some(record))
+        Ok(serde_json::from_slice(&bytes).ok())
     }
 
     /// Keeps a job that was run.
@@ -110,6 +109,6 @@ impl Archive {
 fn record_error(path: &Path, what: &dyn std::fmt::Display) -> ArchiveError {
     ArchiveError::Record {
         path: path.into(),
-        what: format!("{what}: remove it to run the job again"),
+        what: what.to_string(),
     }
 }
