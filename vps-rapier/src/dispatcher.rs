@@ -35,8 +35,8 @@ pub enum Sampling {
 /// What an engine gets of a pair's contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Manifolds {
-    /// Four contacts: the deepest, and those that spread over the largest area (section 3.2), in
-    /// one manifold for each normal.
+    /// The deepest contact and those that spread over the largest area (section 3.2), in one
+    /// manifold for each normal: four of each, eight in all.
     #[default]
     Spread,
     /// The deepest contact of each segment of a level of the shell's tree (section 2.4), 1 being the
