@@ -42,6 +42,8 @@ struct Entry {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Method {
     Vps(Vps),
+    /// The engine's own ball, for a mesh that is one around its origin.
+    Ball,
     ConvexHull,
     ConvexDecomposition {
         parts: usize,

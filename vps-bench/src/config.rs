@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
-use crate::experiments::{Experiment, drop};
+use crate::experiments::{Experiment, bounce, drop, stack};
 
 /// Why a TOML file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +56,10 @@ pub(crate) struct ExperimentFile {
     pub(crate) misleads: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drop: Option<drop::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    bounce: Option<bounce::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    stack: Option<stack::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -89,8 +93,11 @@ impl ExperimentFile {
 
     /// What is to be done.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
-        let kinds: [(&str, Option<&dyn Experiment>); 1] =
-            [("drop", self.drop.as_ref().map(|s| s as &dyn Experiment))];
+        let kinds: [(&str, Option<&dyn Experiment>); 3] = [
+            ("drop", self.drop.as_ref().map(|s| s as &dyn Experiment)),
+            ("bounce", self.bounce.as_ref().map(|s| s as &dyn Experiment)),
+            ("stack", self.stack.as_ref().map(|s| s as &dyn Experiment)),
+        ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);
         match (there.next(), there.next()) {

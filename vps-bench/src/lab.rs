@@ -18,6 +18,7 @@ use vps_core::MassProperties;
 use vps_rapier::{Manifolds, Sampling};
 
 use crate::algorithms::{self, Algorithms, Method, SamplingName};
+use crate::ball::Ball;
 use crate::models::{Models, sha256};
 
 /// Everything jobs have in common.
@@ -125,6 +126,7 @@ fn prepare(method: &Method, scene: &Scene<'_>, assets: &AssetCache) -> Ready {
     let start = Instant::now();
     let result = match method {
         Method::Vps(settings) => vps(settings, &get).prepare(scene),
+        Method::Ball => Ball.prepare(scene),
         Method::ConvexHull => ConvexHull.prepare(scene),
         &Method::ConvexDecomposition {
             parts,

@@ -4,6 +4,7 @@
 
 mod algorithms;
 mod archive;
+mod ball;
 mod claims;
 mod command;
 mod config;

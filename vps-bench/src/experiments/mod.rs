@@ -1,7 +1,11 @@
 //! The kinds of experiments. Each has settings in TOML, makes jobs of them, runs one job to rows,
 //! sums rows up in tables, and says what the tables show.
 
+pub(crate) mod bounce;
 pub(crate) mod drop;
+mod orientation;
+pub(crate) mod stack;
+mod world;
 
 use std::path::Path;
 

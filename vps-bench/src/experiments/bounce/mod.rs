@@ -1,0 +1,226 @@
+//! A ball is dropped and bounces (section 4.1).
+
+mod exact;
+mod show;
+mod simulate;
+mod summary;
+
+use std::path::Path;
+
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+use vps_build::Mesh;
+use vps_compare::{Ground, Scene};
+
+pub(super) use simulate::ball_inertia;
+
+use super::{Error, Experiment, Measured};
+use crate::algorithms::Algorithms;
+use crate::archive::Rows;
+use crate::claims::Tables;
+use crate::config::{not_negative, positive};
+use crate::job::Job;
+use crate::lab::Lab;
+use crate::page::Block;
+use exact::ExactBounce;
+
+/// The ball, and how it is dropped.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    radius_m: f64,
+    /// The mesh VPS samples is an icosahedron divided so many times.
+    subdivisions: u32,
+    mass_kg: f64,
+    friction: f64,
+    /// A box.
+    ground_extents_m: [f64; 3],
+    gravity_m_s2: f64,
+    /// Of the centre above the ground.
+    drop_height_m: f64,
+    frequency_hz: u32,
+    duration_s: f64,
+    /// Cases, each with each.
+    restitutions: Vec<f64>,
+    /// How far ahead contacts are found; the first is drawn.
+    predictions_m: Vec<f64>,
+    /// Random start orientations, and how many of them in a quick run; the first is drawn.
+    orientations: u32,
+    quick_orientations: u32,
+    seed: u64,
+    algorithms: Vec<String>,
+    #[serde(default)]
+    paper_value: Vec<PaperValue>,
+}
+
+/// A cell of Table 1.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct PaperValue {
+    algorithm: String,
+    restitution: f64,
+    penetration_mm: f64,
+}
+
+/// What differs from case to case.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    restitution: f64,
+    prediction_m: f64,
+}
+
+impl Case {
+    fn name(self) -> String {
+        let ahead_mm = self.prediction_m * 1e3;
+        format!("c{}_ahead{}mm", self.restitution, ahead_mm.round())
+    }
+}
+
+impl Settings {
+    /// Those that are drawn come first.
+    fn cases(&self) -> impl Iterator<Item = Case> {
+        self.predictions_m.iter().flat_map(|&prediction_m| {
+            self.restitutions.iter().map(move |&restitution| Case {
+                restitution,
+                prediction_m,
+            })
+        })
+    }
+
+    fn case(&self, name: &str) -> Result<Case, String> {
+        let case = self.cases().find(|case| case.name() == name);
+        case.ok_or_else(|| format!("no case `{name}`"))
+    }
+
+    fn drawn_cases(&self) -> impl Iterator<Item = Case> {
+        self.cases().take(self.restitutions.len())
+    }
+
+    fn steps(&self) -> u32 {
+        (self.duration_s * f64::from(self.frequency_hz)).round() as u32
+    }
+
+    fn exact(&self, restitution: f64) -> ExactBounce {
+        ExactBounce {
+            radius_m: self.radius_m,
+            drop_height_m: self.drop_height_m,
+            gravity_m_s2: self.gravity_m_s2,
+            restitution,
+        }
+    }
+}
+
+impl Experiment for Settings {
+    fn check(&self) -> Result<(), String> {
+        positive("bounce.radius_m", self.radius_m)?;
+        positive("bounce.mass_kg", self.mass_kg)?;
+        positive("bounce.gravity_m_s2", self.gravity_m_s2)?;
+        positive("bounce.frequency_hz", self.frequency_hz.into())?;
+        positive("bounce.duration_s", self.duration_s)?;
+        not_negative("bounce.friction", self.friction)?;
+        for extent in self.ground_extents_m {
+            positive("bounce.ground_extents_m", extent)?;
+        }
+        if !(self.drop_height_m > self.radius_m && self.drop_height_m.is_finite()) {
+            return Err("bounce.drop_height_m must be above bounce.radius_m".into());
+        }
+        if self.subdivisions > 8 {
+            return Err("bounce.subdivisions must be 8 or less".into());
+        }
+        for &restitution in &self.restitutions {
+            if !(0.0..1.0).contains(&restitution) {
+                return Err("bounce.restitutions must be from 0 to below 1".into());
+            }
+        }
+        for &prediction in &self.predictions_m {
+            not_negative("bounce.predictions_m", prediction)?;
+        }
+        if self.orientations == 0 || self.quick_orientations == 0 {
+            return Err("bounce.orientations, bounce.quick_orientations must be 1 or more".into());
+        }
+        if [
+            self.algorithms.len(),
+            self.restitutions.len(),
+            self.predictions_m.len(),
+        ]
+        .contains(&0)
+        {
+            return Err(
+                "bounce.algorithms, restitutions and predictions_m must not be empty".into(),
+            );
+        }
+        Ok(())
+    }
+
+    fn algorithms(&self) -> Vec<&str> {
+        self.algorithms.iter().map(String::as_str).collect()
+    }
+
+    fn jobs(&self, quick: bool) -> Vec<Job> {
+        let seeds = if quick {
+            self.quick_orientations
+        } else {
+            self.orientations
+        };
+        let mut jobs = Vec::new();
+        for seed in 0..seeds {
+            for case in self.cases() {
+                jobs.extend(self.algorithms.iter().map(|algorithm| Job {
+                    case: case.name(),
+                    algorithm: algorithm.clone(),
+                    seed,
+                }));
+            }
+        }
+        jobs
+    }
+
+    fn settings(&self) -> Result<String, Error> {
+        let of_jobs = Self {
+            restitutions: Vec::new(),
+            predictions_m: Vec::new(),
+            orientations: 0,
+            quick_orientations: 0,
+            algorithms: Vec::new(),
+            paper_value: Vec::new(),
+            ..self.clone()
+        };
+        Ok(serde_json::to_string(&of_jobs)?)
+    }
+
+    fn identity(&self, _: &Lab) -> Result<String, String> {
+        Ok(String::new())
+    }
+
+    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+        let mesh = Mesh::icosphere(self.radius_m, self.subdivisions).map_err(|e| e.to_string())?;
+        let scene = Scene {
+            body: &mesh,
+            ground: Ground::Cuboid(self.ground_extents_m),
+        };
+        let identity = format!(
+            "ball {} {} {:?}",
+            self.radius_m, self.subdivisions, self.ground_extents_m
+        );
+        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
+        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let rows = self.simulate(prepared, self.case(&job.case)?, job.seed)?;
+        Ok(Measured {
+            rows: Rows::of(&rows)?,
+            preparation: ready.preparation.clone(),
+        })
+    }
+
+    fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
+        summary::summarize(self, rows)
+    }
+
+    fn present(
+        &self,
+        tables: &Tables,
+        algorithms: &Algorithms,
+        folder: &Path,
+    ) -> Result<Vec<Block>, Error> {
+        show::present(self, tables, algorithms, folder)
+    }
+}
