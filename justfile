@@ -16,14 +16,21 @@ build:
 fetch: build
     {{ bench }} fetch
 
-# Run every experiment and write the reports
-reproduce-paper: fetch
-    {{ bench }} run bunny_drop
-    {{ bench }} report bunny_drop --splice README.md
+# Run every experiment, write the report, put its tables into the README and check the claims
+reproduce-paper: build
+    {{ bench }} reproduce --splice README.md
 
-# A short run of the experiment, into target/smoke
-reproduce-smoke: fetch
-    {{ bench }} run bunny_drop --quick --out target/smoke
+# The same with few starts, into target/smoke; fails if a job fails, whatever becomes of the claims
+reproduce-smoke: build
+    {{ bench }} reproduce --quick --out target/smoke
+
+# Fail if the README or the report are not those of the tables in reports; writes nothing
+reports-check:
+    {{ bench }} report --splice README.md --check
+
+# Open a report in headless Chromium and fail if something in it does not show
+report-check report="reports/report.html":
+    .ci/report-check {{ report }} target/report-check
 
 # All tests, with the same random cases every time
 test: (test-with "2014") no-std

@@ -120,6 +120,22 @@ impl Claim {
         }
     }
 
+    /// A number with the unit of the claim.
+    pub(crate) fn with_unit(&self, value: Option<f64>) -> String {
+        match value {
+            Some(value) if !self.unit.is_empty() => format!("{} {}", short(value), self.unit),
+            value => short(value),
+        }
+    }
+
+    /// Where it stands, in words.
+    pub(crate) fn source_text(&self) -> &str {
+        match self.source.as_str() {
+            "" => "this project",
+            source => source,
+        }
+    }
+
     /// The range in which it holds.
     pub(crate) fn range(&self) -> String {
         match (self.at_least, self.at_most) {

@@ -91,6 +91,13 @@ impl ExperimentFile {
         self.kind()?.check()
     }
 
+    /// Its model and how long a unit of it is, if it is of a kind that takes another one.
+    pub(crate) fn model(&self) -> Option<(&str, f64)> {
+        self.drop
+            .as_ref()
+            .map(|drop| (drop.model.as_str(), drop.scale))
+    }
+
     /// What is to be done.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
         let kinds: [(&str, Option<&dyn Experiment>); 3] = [

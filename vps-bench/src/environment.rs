@@ -13,6 +13,9 @@ pub(crate) struct Environment {
     pub(crate) unix_time_s: u64,
     pub(crate) processor: String,
     pub(crate) logical_cores: usize,
+    /// The core it was kept on, if it was.
+    #[serde(default)]
+    pub(crate) core: Option<usize>,
     pub(crate) memory_mib: u64,
     pub(crate) system: String,
     pub(crate) kernel: String,
@@ -35,6 +38,17 @@ impl Environment {
     /// Whether times taken in both may stand in one table, whichever machine took them: the same
     /// processor, compiler, profile and versions. If not, what differs.
     pub(crate) fn difference(&self, other: &Self) -> Option<String> {
+        let text = |(what, a, b)| format!("{what} is `{a}` here and `{b}` there");
+        self.different(other).map(text).next()
+    }
+
+    /// All that differs between two environments A and B, a line each.
+    pub(crate) fn differences(&self, other: &Self) -> Vec<String> {
+        let text = |(what, a, b)| format!("{what}: `{a}` in A, `{b}` in B");
+        self.different(other).map(text).collect()
+    }
+
+    fn different(&self, other: &Self) -> impl Iterator<Item = (&'static str, String, String)> {
         let of = |e: &Self| {
             [
                 ("processor", e.processor.clone()),
@@ -51,12 +65,12 @@ impl Environment {
             ]
         };
         let both = of(self).into_iter().zip(of(other));
-        let different = both.into_iter().find(|(a, b)| a != b);
-        different.map(|((what, a), (_, b))| format!("{what} is `{a}` here and `{b}` there"))
+        let different = both.filter(|(a, b)| a != b);
+        different.map(|((what, a), (_, b))| (what, a, b))
     }
 
-    /// That of this run.
-    pub(crate) fn of_now() -> Self {
+    /// That of this run, which is kept on a core or not.
+    pub(crate) fn of_now(core: Option<usize>) -> Self {
         let machine = sysinfo::System::new().map(|mut system| {
             system.refresh_memory();
             system.refresh_cpu_all();
@@ -71,6 +85,7 @@ impl Environment {
                 .map_or(0, |d| d.as_secs()),
             processor: processor.unwrap_or_else(unknown),
             logical_cores,
+            core,
             memory_mib,
             system: sysinfo::System::long_os_version().unwrap_or_else(|_| unknown()),
             kernel: sysinfo::System::kernel_version().unwrap_or_else(|_| unknown()),

@@ -29,6 +29,11 @@ impl Shard {
     /// All of it.
     pub(crate) const WHOLE: Self = Self { index: 1, count: 1 };
 
+    /// Its number, from 1.
+    pub(crate) fn index(self) -> usize {
+        self.index
+    }
+
     /// Whether the job of a number, from 0, belongs to it.
     pub(crate) fn has(self, job: usize) -> bool {
         job % self.count == self.index - 1

@@ -7,6 +7,7 @@ mod archive;
 mod ball;
 mod claims;
 mod command;
+mod compare;
 mod config;
 mod environment;
 mod experiments;
@@ -16,8 +17,10 @@ mod job;
 mod lab;
 mod models;
 mod page;
+mod pin;
 mod report;
 mod run;
+mod scratch;
 mod timed;
 
 use std::path::PathBuf;
@@ -71,13 +74,23 @@ enum Command {
         /// A file to put tables into, between `<!-- NAME -->` and `<!-- /NAME -->`
         #[arg(long)]
         splice: Option<PathBuf>,
-        /// Change nothing; fail if that file is not what it should be
+        /// Write nothing; fail if that file or the report is not what it should be
         #[arg(long, requires = "splice")]
         check: bool,
     },
-    /// Judge the claims; fails if one turned out otherwise than the experiments say
+    /// Judge the claims; fails if one turned out otherwise than the experiments say, but not of
+    /// quick runs
     Check { names: Vec<String> },
-    /// Fetch, run and report everything, then check the claims
+    /// Times in folder B as ratios of those in folder A, such as of two machines
+    Compare {
+        a: PathBuf,
+        b: PathBuf,
+        /// A row a time, for other programs
+        #[arg(long)]
+        csv: bool,
+    },
+    /// Fetch, run and report everything, then check the claims; of a part of the jobs there is no
+    /// report until the other parts are there
     Reproduce {
         #[command(flatten)]
         choice: ChoiceArguments,
@@ -99,6 +112,9 @@ struct ChoiceArguments {
     /// again for the tables
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// Leave it to the system on which core things are timed
+    #[arg(long)]
+    unpinned: bool,
 }
 
 impl ChoiceArguments {
@@ -107,6 +123,7 @@ impl ChoiceArguments {
             quick: self.quick,
             filter: self.filter.as_deref(),
             shard: self.shard.unwrap_or(Shard::WHOLE),
+            is_pinned: !self.unpinned,
         }
     }
 }
@@ -144,7 +161,7 @@ fn execute(cli: &Cli) -> Result<Vec<String>, experiments::Error> {
             scale,
         } => {
             let other = model.as_deref().map(|model| (model, *scale));
-            project.run(names, choice.choice(), other)
+            Ok(project.run(names, choice.choice(), other)?.failures)
         }
         Command::Report {
             names,
@@ -152,10 +169,23 @@ fn execute(cli: &Cli) -> Result<Vec<String>, experiments::Error> {
             check,
         } => project.report(names, splice.as_deref(), *check),
         Command::Check { names } => project.check(names),
+        Command::Compare { a, b, csv } => {
+            let comparisons = compare::compare(a, b)?;
+            if *csv {
+                print!("{}", compare::csv(&comparisons)?);
+            } else {
+                print!("{}", compare::text(&comparisons));
+            }
+            Ok(Vec::new())
+        }
         Command::Reproduce { choice, splice } => {
             project.fetch(&[])?;
             let names = project.names()?;
-            let mut failures = project.run(&names, choice.choice(), None)?;
+            let run = project.run(&names, choice.choice(), None)?;
+            let mut failures = run.failures;
+            if run.missing > 0 {
+                return Ok(failures);
+            }
             failures.extend(project.report(&[], splice.as_deref(), false)?);
             failures.extend(project.check(&[])?);
             Ok(failures)

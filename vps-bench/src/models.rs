@@ -10,6 +10,7 @@ use sha2::{Digest, Sha256};
 use vps_build::{FileError, write_atomically};
 
 use crate::config::{ConfigError, read_toml};
+use crate::scratch::Scratch;
 
 /// The models an experiment can name.
 pub(crate) struct Models {
@@ -193,34 +194,34 @@ impl DebianSource {
     /// Downloads the package without installing it, first with the package lists the system has,
     /// then with new ones of our own: that needs no rights and changes nothing on the system.
     fn fetch(&self) -> Result<Vec<u8>, String> {
-        let folder = Scratch::new()?;
+        let folder = Scratch::new("vps-fetch")?;
         let timeouts = ["-oAcquire::http::Timeout=10", "-oAcquire::Retries=1"].map(String::from);
         let download = |extra: &[String]| {
             let mut arguments = [timeouts.as_slice(), extra].concat();
             arguments.extend(["download".into(), self.debian_package.clone()]);
-            run("apt-get", &arguments, &folder.0)
+            run("apt-get", &arguments, folder.path())
         };
         if download(&[]).is_err() {
-            let lists = folder.0.join("lists");
+            let lists = folder.path().join("lists");
             std::fs::create_dir_all(lists.join("partial")).map_err(|e| e.to_string())?;
             let own_lists = [
                 format!("-oDir::State::lists={}", lists.display()),
-                format!("-oDir::Cache={}", folder.0.display()),
+                format!("-oDir::Cache={}", folder.path().display()),
                 "-oDebug::NoLocking=1".into(),
             ];
             let update = [timeouts.as_slice(), &own_lists, &["update".into()]].concat();
-            run("apt-get", &update, &folder.0)?;
+            run("apt-get", &update, folder.path())?;
             download(&own_lists)?;
         }
-        let entries = std::fs::read_dir(&folder.0).map_err(|e| e.to_string())?;
+        let entries = std::fs::read_dir(folder.path()).map_err(|e| e.to_string())?;
         let package = entries
             .flatten()
             .map(|entry| entry.path())
             .find(|path| path.extension().is_some_and(|e| e == "deb"))
             .ok_or("apt-get download left no package behind")?;
         let unpack = ["-x".into(), package.display().to_string(), "content".into()];
-        run("dpkg-deb", &unpack, &folder.0)?;
-        let file = folder.0.join("content").join(&self.path);
+        run("dpkg-deb", &unpack, folder.path())?;
+        let file = folder.path().join("content").join(&self.path);
         std::fs::read(&file).map_err(|e| format!("{} in the package: {e}", self.path))
     }
 }
@@ -241,22 +242,4 @@ fn run(program: &str, arguments: &[String], folder: &Path) -> Result<(), String>
         .rfind(|l| l.starts_with("E:"))
         .unwrap_or("failed");
     Err(format!("{program}: {last}"))
-}
-
-/// A folder that is gone afterwards.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Result<Self, String> {
-        let path = std::env::temp_dir().join(format!("vps-fetch-{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // What cannot be removed lies in the system's own temporary folder.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
 }

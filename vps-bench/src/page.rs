@@ -12,6 +12,8 @@ pub(crate) struct Section {
     pub(crate) misleads: String,
     pub(crate) blocks: Vec<Block>,
     pub(crate) verdicts: Vec<Verdict>,
+    /// Arguments of the command that makes it again.
+    pub(crate) command: String,
     /// What was run and on what, one sentence each.
     pub(crate) made_with: Vec<String>,
     /// The CSV files beside it.

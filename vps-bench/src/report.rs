@@ -1,5 +1,6 @@
 //! The report: made from the small tables of all experiments alone.
 
+mod html;
 mod markdown;
 
 use std::path::Path;
@@ -13,6 +14,10 @@ use crate::experiments::Error;
 use crate::frame;
 use crate::page::{Block, Section};
 use crate::run::MadeWith;
+
+/// Files of the report.
+pub(crate) const MARKDOWN: &str = "report.md";
+pub(crate) const HTML: &str = "report.html";
 
 /// The tables of an experiment and what they were made with.
 pub(crate) struct Results {
@@ -71,6 +76,7 @@ impl Results {
             misleads: file.misleads.clone(),
             blocks,
             verdicts: self.verdicts(file),
+            command: self.command(file),
             made_with: self.made_with(),
             files: self
                 .tables
@@ -80,15 +86,32 @@ impl Results {
         })
     }
 
+    /// Arguments that run it as it was run; `file` says what is run without any.
+    fn command(&self, file: &ExperimentFile) -> String {
+        let mut command = format!("run {}", self.name);
+        if self.made_with.quick {
+            command += " --quick";
+        }
+        let model = self.made_with.experiment.model();
+        if let Some((model, scale)) = model.filter(|_| model != file.model()) {
+            command += &format!(" --model {model} --scale {scale}");
+        }
+        command
+    }
+
     fn made_with(&self) -> Vec<String> {
         let environment = &self.made_with.environment;
         let revision = match environment.revision.as_str() {
             "" => "unknown",
             revision => revision,
         };
+        let core = match environment.core {
+            Some(core) => format!("kept on core {core}"),
+            None => "kept on no core".into(),
+        };
         let mut text = vec![
             format!(
-                "{}, {} logical cores, {} MiB, {} (kernel {})",
+                "{}, {} logical cores, {core}, {} MiB, {} (kernel {})",
                 environment.processor,
                 environment.logical_cores,
                 environment.memory_mib,
@@ -111,21 +134,24 @@ impl Results {
     }
 }
 
-/// Writes the report on experiments, given their names and files, into `out`; gives the first table
-/// of each as Markdown.
+/// Writes the report on experiments, given their names and files, from the tables in `records` into
+/// `out`; gives the first table of each as Markdown.
 pub(crate) fn write(
     experiments: &[(String, ExperimentFile)],
     algorithms: &Algorithms,
+    records: &Path,
     out: &Path,
 ) -> Result<Vec<(String, String)>, Error> {
     let mut sections = Vec::new();
     for (name, file) in experiments {
+        let results = Results::read(name, &records.join(name))?;
         let folder = out.join(name);
-        let results = Results::read(name, &folder)?;
+        std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         sections.push(results.section(file, algorithms, &folder)?);
     }
-    let text = markdown::report(&sections);
-    write_atomically(&out.join("report.md"), text.as_bytes())?;
+    write_atomically(&out.join(MARKDOWN), markdown::report(&sections).as_bytes())?;
+    let html = html::report(&sections, out)?;
+    write_atomically(&out.join(HTML), html.as_bytes())?;
     let first_table = |section: &Section| {
         let table = section.blocks.iter().find_map(|block| match block {
             Block::Table(table) => Some(table.markdown()),
@@ -136,9 +162,23 @@ pub(crate) fn write(
     Ok(sections.iter().map(first_table).collect())
 }
 
+/// Replaces what stands between the marks of each table in a text that has marks of some of them.
+pub(crate) fn spliced_all(text: &str, tables: &[(String, String)]) -> Result<String, String> {
+    let mut all = None;
+    for (name, table) in tables {
+        if let Some(new) = spliced(all.as_deref().unwrap_or(text), name, table) {
+            all = Some(new);
+        }
+    }
+    let name = tables.first().map_or("NAME", |(name, _)| name);
+    all.ok_or_else(|| {
+        format!("there are no marks such as `<!-- {name} -->` and `<!-- /{name} -->`")
+    })
+}
+
 /// Replaces what stands in a text between the marks `<!-- name -->` and `<!-- /name -->`; `None`
 /// without them.
-pub(crate) fn spliced(text: &str, name: &str, content: &str) -> Option<String> {
+fn spliced(text: &str, name: &str, content: &str) -> Option<String> {
     let (open, close) = (format!("<!-- {name} -->"), format!("<!-- /{name} -->"));
     let start = text.find(&open)? + open.len();
     let end = start + text[start..].find(&close)?;

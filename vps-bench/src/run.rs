@@ -15,6 +15,7 @@ use crate::experiments::{Error, Experiment};
 use crate::job::{Job, Shard};
 use crate::lab::{Lab, Preparation};
 use crate::models::sha256;
+use crate::pin;
 
 /// Which jobs are run.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +24,8 @@ pub(crate) struct Choice<'c> {
     /// Only those with this in their name.
     pub(crate) filter: Option<&'c str>,
     pub(crate) shard: Shard,
+    /// Whether all is done on one core.
+    pub(crate) is_pinned: bool,
 }
 
 /// What became of an experiment.
@@ -58,7 +61,8 @@ pub(crate) fn run(
     let experiment = file.kind()?;
     let archive = Archive::new(folder.join("raw"));
     let jobs = experiment.jobs(choice.quick);
-    let environment = Environment::of_now();
+    let core = choice.is_pinned.then(|| pin::to_one_core(choice.shard));
+    let environment = Environment::of_now(core.flatten());
     let identity = experiment.identity(lab)?;
     let mut outcome = Outcome {
         run: 0,

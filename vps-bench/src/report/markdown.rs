@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::claims::Verdict;
-use crate::page::{Block, Section, Table, short};
+use crate::page::{Block, Section, Table};
 
 /// All sections, with a table of verdicts first.
 pub(super) fn report(sections: &[Section]) -> String {
@@ -47,9 +47,9 @@ fn section(section: &Section) -> String {
     let _ = write!(
         text,
         "\n**How it could mislead.** {}\n\n\
-         **Made with** `vps-bench run {}`: {}. Records: {}.\n",
+         **Made with** `vps-bench {}`: {}. Records: {}.\n",
         section.misleads.trim(),
-        section.name,
+        section.command,
         section.made_with.join("; "),
         files.collect::<Vec<_>>().join(", ")
     );
@@ -64,15 +64,6 @@ pub(super) fn verdicts(verdicts: &[&Verdict]) -> Table {
     );
     for verdict in verdicts {
         let claim = &verdict.claim;
-        let with_unit = |value: Option<f64>| match value {
-            Some(value) if !claim.unit.is_empty() => format!("{} {}", short(value), claim.unit),
-            value => short(value),
-        };
-        let source = if claim.source.is_empty() {
-            "this project".into()
-        } else {
-            claim.source.clone()
-        };
         let outcome = if claim.why.is_empty() {
             format!("**{}**", verdict.outcome.text())
         } else {
@@ -80,9 +71,9 @@ pub(super) fn verdicts(verdicts: &[&Verdict]) -> Table {
         };
         table.push([
             claim.says.clone(),
-            source,
-            with_unit(claim.paper),
-            with_unit(verdict.measured),
+            claim.source_text().into(),
+            claim.with_unit(claim.paper),
+            claim.with_unit(verdict.measured),
             claim.range(),
             outcome,
         ]);

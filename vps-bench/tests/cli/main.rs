@@ -1,0 +1,11 @@
+//! The command as its users meet it: small runs of a box that falls, and everything that can be
+//! wrong.
+
+mod compare;
+mod fetch;
+mod project;
+mod report;
+mod resume;
+mod run;
+mod shards;
+mod wrong;

@@ -1,0 +1,76 @@
+//! What was run before is kept, as long as it is the same.
+
+use std::fs;
+
+use crate::project::{Project, column};
+
+#[test]
+fn what_was_run_is_kept_until_something_changes() {
+    let project = Project::new("resume");
+    project.succeeds(&["run", "fall", "--quick"]);
+    let runs = |expected: &str| {
+        let said = project.succeeds(&["run", "fall", "--quick"]);
+        assert!(said.contains(expected), "{expected}: {said}");
+    };
+    let summary = project.read("reports/fall/summary.csv");
+    runs("0 jobs run, 4 kept");
+    assert_eq!(project.read("reports/fall/summary.csv"), summary);
+
+    // A run that was ended in the middle: of two jobs one has no record, one not even rows.
+    let raw = project.files("reports/fall/raw", "json");
+    fs::remove_file(&raw[0]).unwrap();
+    fs::remove_file(&raw[1]).unwrap();
+    fs::remove_file(raw[1].with_extension("csv")).unwrap();
+    runs("2 jobs run, 2 kept");
+
+    // What is shown or claimed changes no job.
+    let fall = "experiments/fall.toml";
+    project.edit(fall, fall, "measured_s = [0.4", "measured_s = [0.3");
+    project.edit(fall, fall, "A box falls", "A box that falls");
+    runs("0 jobs run, 4 kept");
+    let queries = project.read("reports/fall/summary.csv");
+    assert_eq!(column(&queries, "queries"), ["60"; 4]);
+
+    // An algorithm's parameter changes its own jobs, and those of the algorithms like it.
+    let algorithms = "experiments/algorithms.toml";
+    project.edit(algorithms, algorithms, "segments = 2", "segments = 3");
+    runs("1 jobs run, 3 kept");
+    project.edit(algorithms, algorithms, "points = 800", "points = 700");
+    runs("2 jobs run, 2 kept");
+
+    // The world, and the bytes of the model, change all.
+    project.edit(fall, fall, "friction = 0.5", "friction = 0.4");
+    runs("4 jobs run, 0 kept");
+    project.edit("box.obj", "box.obj", "v -0.1 -0.05", "v -0.11 -0.05");
+    runs("4 jobs run, 0 kept");
+}
+
+#[test]
+fn a_filter_runs_what_it_names() {
+    let project = Project::new("filter");
+    let run = |filter: &str| project.succeeds(&["run", "fall", "--filter", filter]);
+    let said = run("/200hz.hull.");
+    assert!(
+        said.contains("2 jobs run, 0 kept, 6 left to others"),
+        "{said}"
+    );
+    assert!(!project.path("reports/fall/made_with.json").exists());
+    let said = run(".1");
+    assert!(
+        said.contains("3 jobs run, 2 kept, 3 left to others"),
+        "{said}"
+    );
+    let said = run("");
+    assert!(said.contains("3 jobs run, 5 kept, tables in"), "{said}");
+    assert!(project.path("reports/fall/made_with.json").exists());
+}
+
+#[test]
+fn a_broken_record_is_named() {
+    let project = Project::new("broken");
+    project.succeeds(&["run", "fall", "--quick"]);
+    let record = "reports/fall/raw/200hz.hull.0.json";
+    project.write(record, "{ \"job\": ");
+    let expected = ["200hz.hull.0.json: ", "remove it to run the job again"];
+    project.fails(2, &["run", "fall", "--quick"], &expected);
+}
