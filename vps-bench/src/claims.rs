@@ -162,6 +162,15 @@ impl Verdict {
     pub(crate) fn is_as_expected(&self) -> bool {
         self.outcome == self.claim.expect
     }
+
+    /// Why it is so; empty if nobody said so, and if what was said is of another outcome.
+    pub(crate) fn why(&self) -> &str {
+        if self.is_as_expected() {
+            &self.claim.why
+        } else {
+            ""
+        }
+    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,8 @@ pub(crate) struct Section {
     pub(crate) title: String,
     pub(crate) paper: String,
     pub(crate) question: String,
+    /// Whether few starts were run.
+    pub(crate) is_quick: bool,
     pub(crate) misleads: String,
     pub(crate) blocks: Vec<Block>,
     pub(crate) verdicts: Vec<Verdict>,
@@ -19,6 +21,10 @@ pub(crate) struct Section {
     /// The CSV files beside it.
     pub(crate) files: Vec<String>,
 }
+
+/// What is said of a quick run.
+pub(crate) const QUICK: &str =
+    "A quick run of few starts: numbers are rough, verdicts do not count.";
 
 /// A piece of a section.
 pub(crate) enum Block {
@@ -72,6 +78,8 @@ impl Table {
 /// Three significant digits; a dash for what is no number.
 pub(crate) fn short(value: impl Into<Option<f64>>) -> String {
     match value.into() {
+        // Less than the last digit that would be written.
+        Some(value) if value.abs() < 5e-10 => "0".into(),
         Some(value) if value.is_finite() => {
             let magnitude = value.abs().max(1e-12).log10().floor() as i32;
             let digits = (2 - magnitude).clamp(0, 9) as usize;

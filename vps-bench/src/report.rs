@@ -73,6 +73,7 @@ impl Results {
             title: file.title.clone(),
             paper: file.paper.clone(),
             question: file.question.clone(),
+            is_quick: self.made_with.quick,
             misleads: file.misleads.clone(),
             blocks,
             verdicts: self.verdicts(file),
@@ -109,7 +110,7 @@ impl Results {
             Some(core) => format!("kept on core {core}"),
             None => "kept on no core".into(),
         };
-        let mut text = vec![
+        vec![
             format!(
                 "{}, {} logical cores, {core}, {} MiB, {} (kernel {})",
                 environment.processor,
@@ -126,11 +127,7 @@ impl Results {
                 "taking a time costs {} ns, which every time contains",
                 environment.timer_overhead_ns
             ),
-        ];
-        if self.made_with.quick {
-            text.push("a quick run, of few starts".into());
-        }
-        text
+        ]
     }
 }
 

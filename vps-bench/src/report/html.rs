@@ -7,7 +7,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::claims::{Outcome, Verdict};
 use crate::experiments::Error;
-use crate::page::{Block, FigureLink, Section, Table};
+use crate::page::{Block, FigureLink, QUICK, Section, Table};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -35,7 +35,9 @@ pub(super) fn report(sections: &[Section], folder: &Path) -> Result<String, Erro
             body {
                 header {
                     h1 { "Report" }
-                    p { (count(&all.iter().map(|(_, v)| *v).collect::<Vec<_>>())) }
+                    @if !all.is_empty() {
+                        p { (count(&all.iter().map(|(_, v)| *v).collect::<Vec<_>>())) }
+                    }
                 }
                 nav aria-label="Contents" {
                     h2 { "Contents" }
@@ -66,11 +68,11 @@ fn count(verdicts: &[&Verdict]) -> String {
     let of = |outcome| verdicts.iter().filter(|v| v.outcome == outcome).count();
     let otherwise = verdicts.iter().filter(|v| !v.is_as_expected()).count();
     let outcomes = [Outcome::Holds, Outcome::DoesNotHold, Outcome::NotComparable];
-    let counted = outcomes.map(|outcome| format!("{}: {}", outcome.text(), of(outcome)));
-    let counted = format!("Claims: {}. ", verdicts.len()) + &counted.join(", ");
+    let counted = outcomes.map(|outcome| format!("{} {}", of(outcome), outcome.text()));
+    let counted = format!("Of {} claims: {}", verdicts.len(), counted.join(", "));
     match otherwise {
-        0 => format!("{counted}; all as expected."),
-        n => format!("{counted}; otherwise than expected: {n}."),
+        0 => format!("{counted}. All as expected."),
+        n => format!("{counted}. {n} otherwise than expected."),
     }
 }
 
@@ -89,6 +91,7 @@ fn section(section: &Section, folder: &Path) -> Result<Markup, Error> {
             h2 { (section.title) }
             p class="source" { "Paper: " (section.paper) }
             div class="question" { (prose(&section.question)) }
+            @if section.is_quick { p class="quick" { (QUICK) } }
             @for block in &blocks { (block) }
             @if !verdicts.is_empty() {
                 h3 { "Verdicts" }
@@ -215,7 +218,7 @@ fn claims(verdicts: &[(&Section, &Verdict)], with_experiment: bool) -> Markup {
                 td data-head="verdict" {
                     div {
                         (outcome(verdict))
-                        @if !claim.why.is_empty() { p class="why" { (claim.why) } }
+                        @if !verdict.why().is_empty() { p class="why" { (verdict.why()) } }
                     }
                 }
             }

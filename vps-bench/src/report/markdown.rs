@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::claims::Verdict;
-use crate::page::{Block, Section, Table};
+use crate::page::{Block, QUICK, Section, Table};
 
 /// All sections, with a table of verdicts first.
 pub(super) fn report(sections: &[Section]) -> String {
@@ -25,6 +25,9 @@ fn section(section: &Section) -> String {
         section.paper,
         section.question.trim()
     );
+    if section.is_quick {
+        let _ = write!(text, "\n**{QUICK}**\n");
+    }
     for block in &section.blocks {
         let _ = match block {
             Block::Text(paragraph) => write!(text, "\n{}\n", paragraph.trim()),
@@ -64,11 +67,13 @@ pub(super) fn verdicts(verdicts: &[&Verdict]) -> Table {
     );
     for verdict in verdicts {
         let claim = &verdict.claim;
-        let outcome = if claim.why.is_empty() {
-            format!("**{}**", verdict.outcome.text())
-        } else {
-            format!("**{}**: {}", verdict.outcome.text(), claim.why)
-        };
+        let mut outcome = format!("**{}**", verdict.outcome.text());
+        if !verdict.is_as_expected() {
+            outcome += ", otherwise than expected";
+        }
+        if !verdict.why().is_empty() {
+            outcome += &format!(": {}", verdict.why());
+        }
         table.push([
             claim.says.clone(),
             claim.source_text().into(),

@@ -44,13 +44,13 @@ fn models_are_fetched_in_order_checked_and_kept() {
         "experiments/models.toml",
         &models(BOX_SHA256, &[NOBODY, &address]),
     );
-    let (code, message) = project.bench(&["fetch"]);
-    assert_eq!((code, message.as_str()), (Some(0), ""));
+    project.succeeds(&["fetch"]);
     assert_eq!(project.read(".cache/models/box.obj"), BOX);
     // From now on no source is asked.
-    assert_eq!(project.bench(&["fetch", "box"]).0, Some(0));
+    project.succeeds(&["fetch", "box"]);
     project.write(".cache/models/box.obj", "v 0 0 0\n");
     project.fails(
+        2,
         &["fetch"],
         &["box.obj: SHA-256 is", BOX_SHA256, "remove the file"],
     );
@@ -66,14 +66,15 @@ fn wrong_and_unreachable_models_are_refused() {
     );
     let by_hand = ".cache/models/box.obj";
     project.fails(
+        2,
         &["fetch"],
         &[NOBODY, &address, "refused", by_hand, BOX_SHA256],
     );
     assert!(!project.0.join(by_hand).exists());
-    project.fails(&["fetch", "cow"], &["`cow`", "models.toml"]);
+    project.fails(2, &["fetch", "cow"], &["`cow`", "models.toml"]);
     project.write(
         "experiments/models.toml",
         "[box]\nabout = \"\"\nfile = \"b\"\nsha = \"1\"\n",
     );
-    project.fails(&["fetch"], &["models.toml:4: ", "`sha`"]);
+    project.fails(2, &["fetch"], &["models.toml:4: ", "`sha`"]);
 }

@@ -106,7 +106,7 @@ fn a_claim_that_turns_out_otherwise_fails_the_check() {
     project.succeeds(&["run", "fall"]);
     let said = project.succeeds(&["check"]);
     assert!(
-        said.contains("fall/stays_above: holds: 0.00 (at most 0.00)"),
+        said.contains("fall/stays_above: holds: 0 (at most 0)"),
         "{said}"
     );
     let fall = "experiments/fall.toml";
