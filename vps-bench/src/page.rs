@@ -70,6 +70,7 @@ impl Table {
 /// Three significant digits; a dash for what is no number.
 pub(crate) fn short(value: impl Into<Option<f64>>) -> String {
     match value.into() {
+        Some(0.0) => "0".into(),
         Some(value) if value.is_finite() => {
             let magnitude = value.abs().max(1e-12).log10().floor() as i32;
             let digits = (2 - magnitude).clamp(0, 9) as usize;

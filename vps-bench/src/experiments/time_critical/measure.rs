@@ -76,7 +76,7 @@ const SAMPLED: usize = 10;
 
 /// A query that ends late is asked so many times in all: if it never ends in time, it is late by
 /// itself.
-const TRIES: usize = 5;
+const TRIES: usize = 10;
 
 /// Asks about all poses.
 ///
@@ -270,7 +270,7 @@ mod tests {
         let mut tries = 0;
         clock.ended(us(130), limit, || {
             tries += 1;
-            us(if tries == 4 { 90 } else { 101 })
+            us(if tries == TRIES - 1 { 90 } else { 101 })
         });
         assert_eq!((clock.overruns, clock.late_by_itself), (1, 0));
         clock.ended(us(120), limit, || us(101));

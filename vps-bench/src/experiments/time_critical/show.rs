@@ -75,10 +75,7 @@ impl Page<'_> {
     fn three(row: &Row<'_>, what: &str, factor: f64) -> String {
         let number = |q: &str| {
             let value = row.number(&format!("{what}_{q}"));
-            match value {
-                Some(0.0) => "0".into(),
-                value => short(value.map(|v| factor * v)),
-            }
+            short(value.map(|v| factor * v))
         };
         QUANTILES.map(|(q, ..)| number(q)).join(" / ")
     }
