@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
-use crate::experiments::{Experiment, bounce, drop, stack};
+use crate::experiments::{Experiment, bounce, drop, stack, time_critical};
 
 /// Why a TOML file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +60,8 @@ pub(crate) struct ExperimentFile {
     bounce: Option<bounce::Settings>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     stack: Option<stack::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    time_critical: Option<time_critical::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -100,10 +102,14 @@ impl ExperimentFile {
 
     /// What is to be done.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
-        let kinds: [(&str, Option<&dyn Experiment>); 3] = [
+        let kinds: [(&str, Option<&dyn Experiment>); 4] = [
             ("drop", self.drop.as_ref().map(|s| s as &dyn Experiment)),
             ("bounce", self.bounce.as_ref().map(|s| s as &dyn Experiment)),
             ("stack", self.stack.as_ref().map(|s| s as &dyn Experiment)),
+            (
+                "time_critical",
+                self.time_critical.as_ref().map(|s| s as &dyn Experiment),
+            ),
         ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);

@@ -167,6 +167,8 @@ impl Figure {
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, (FONT, 24))
             .margin(12)
+            // The last value of an axis is written around its end.
+            .margin_right(36)
             .x_label_area_size(48)
             .y_label_area_size(84)
             .build_cartesian_2d(self.x.drawn(), self.y.drawn())

@@ -5,6 +5,7 @@ pub(crate) mod bounce;
 pub(crate) mod drop;
 mod orientation;
 pub(crate) mod stack;
+pub(crate) mod time_critical;
 mod world;
 
 use std::path::Path;

@@ -1,0 +1,282 @@
+//! Asks a query that is ended early, and the whole one.
+
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rapier3d::math::{Pose, Vector};
+use serde::Serialize;
+use vps_core::{DistanceField, Estimate, PointSphereTree, Query, Vec3, Weight};
+
+use super::quantiles::Quantiles;
+use super::{Limit, Settings};
+use crate::experiments::orientation::orientation_of;
+use crate::lab::Body;
+
+/// What a batch of poses gave; errors are those against the whole query.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct BatchRow {
+    poses: usize,
+    /// How many found all there is.
+    complete: usize,
+    /// By how much the deepest contact found is less deep than the deepest there is.
+    penetration_error_mm_median: f64,
+    penetration_error_mm_p99: f64,
+    penetration_error_mm_max: f64,
+    /// By how much the bound on the penetration is above it.
+    bound_error_mm_median: f64,
+    bound_error_mm_p99: f64,
+    bound_error_mm_max: f64,
+    /// Length of the difference of forces over that of the force, where there is one.
+    force_error_median: Option<f64>,
+    force_error_p99: Option<f64>,
+    force_error_max: Option<f64>,
+    query_us_median: f64,
+    query_us_p99: f64,
+    query_us_max: f64,
+    /// Queries that ended after their deadline, and the longest time after it.
+    overruns: Option<usize>,
+    overrun_us_max: Option<f64>,
+    /// Those of them that end late however often they are asked.
+    late_by_itself: Option<usize>,
+    /// The same of a loop that only looks at the clock: what the machine does by itself.
+    idle_loops: Option<usize>,
+    idle_overruns: Option<usize>,
+    idle_overrun_us_max: Option<f64>,
+}
+
+/// Shell to field, of a batch.
+pub(super) struct Poses(Vec<Pose>);
+
+impl Poses {
+    /// Random ones of a body in the ground.
+    pub(super) fn of(settings: &Settings, body: &Body, batch: u32) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(settings.seed.wrapping_add(u64::from(batch)));
+        let [from, to] = settings.depth_m;
+        let upper_side = 0.5 * settings.ground_extents_m[1];
+        let poses = (0..settings.poses_per_batch).map(|_| {
+            let rotation = orientation_of(rng.random());
+            let [x, z, depth]: [f64; 3] = rng.random();
+            let aside = |share: f64| (settings.aside_m * (2.0 * share - 1.0)) as f32;
+            let turned = Pose::from_parts(Vector::ZERO, rotation);
+            let depth = from + depth * (to - from);
+            let height = f64::from(body.oracle.penetration(&turned, 0.0)) - depth;
+            let at = Vector::new(aside(x), (upper_side + height) as f32, aside(z));
+            Pose::from_parts(at, rotation)
+        });
+        Self(poses.collect())
+    }
+}
+
+/// So many poses are asked about before any counts: code and data are in the cache then.
+const WARM_UP: usize = 200;
+
+/// After so many queries with a deadline the error of one is taken, and an idle loop is run.
+const SAMPLED: usize = 10;
+
+/// A query that ends late is asked so many times in all: if it never ends in time, it is late by
+/// itself.
+const TRIES: usize = 10;
+
+/// Asks about all poses.
+///
+/// # Errors
+/// When the query breaks what it promises: a deepest contact deeper than there is, or a bound below
+/// it.
+pub(super) fn measure<F: DistanceField>(
+    settings: &Settings,
+    limit: Limit,
+    tree: &PointSphereTree<'_>,
+    field: &F,
+    center: Vec3,
+    poses: &Poses,
+) -> Result<BatchRow, String> {
+    for pose in poses.0.iter().take(WARM_UP) {
+        std::hint::black_box(Query::new(tree, field, *pose).time_critical(center, |_| true));
+    }
+    let mut errors = Errors::default();
+    let mut clock = Clock::default();
+    for (number, pose) in poses.0.iter().enumerate() {
+        let (estimate, took) = ask(settings, limit, tree, field, center, pose);
+        clock.ended(took, limit, || {
+            ask(settings, limit, tree, field, center, pose).1
+        });
+        errors.complete += usize::from(estimate.is_complete);
+        let Limit::Deadline(deadline) = limit else {
+            errors.add(&Query::new(tree, field, *pose), center, &estimate)?;
+            continue;
+        };
+        if number % SAMPLED == 0 {
+            errors.add(&Query::new(tree, field, *pose), center, &estimate)?;
+            let start = Instant::now();
+            let end = start + settings.told(deadline);
+            while Instant::now() < end {}
+            clock.idled(start.elapsed(), deadline);
+        }
+    }
+    Ok(row(limit, errors, clock))
+}
+
+/// Asks once; gives how long it took, too.
+fn ask<F: DistanceField>(
+    settings: &Settings,
+    limit: Limit,
+    tree: &PointSphereTree<'_>,
+    field: &F,
+    center: Vec3,
+    pose: &Pose,
+) -> (Estimate, Duration) {
+    let start = Instant::now();
+    let query = Query::new(tree, field, *pose);
+    let estimate = match limit {
+        Limit::Points(points) => query.time_critical(center, |tested| tested < points),
+        Limit::None => query.time_critical(center, |_| true),
+        Limit::Deadline(deadline) => {
+            let end = start + settings.told(deadline);
+            let mut asked = 0;
+            query.time_critical(center, |_| {
+                asked += 1;
+                asked % settings.clock_every != 0 || Instant::now() < end
+            })
+        }
+    };
+    (estimate, start.elapsed())
+}
+
+fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
+    let none = Quantiles {
+        median: 0.0,
+        p99: 0.0,
+        max: 0.0,
+    };
+    let poses = clock.query_us.len();
+    let penetration = Quantiles::of(errors.penetration_mm).unwrap_or(none);
+    let bound = Quantiles::of(errors.bound_mm).unwrap_or(none);
+    let force = Quantiles::of(errors.force);
+    let query = Quantiles::of(clock.query_us).unwrap_or(none);
+    let has_deadline = matches!(limit, Limit::Deadline(_));
+    BatchRow {
+        poses,
+        complete: errors.complete,
+        penetration_error_mm_median: penetration.median,
+        penetration_error_mm_p99: penetration.p99,
+        penetration_error_mm_max: penetration.max,
+        bound_error_mm_median: bound.median,
+        bound_error_mm_p99: bound.p99,
+        bound_error_mm_max: bound.max,
+        force_error_median: force.map(|f| f.median),
+        force_error_p99: force.map(|f| f.p99),
+        force_error_max: force.map(|f| f.max),
+        query_us_median: query.median,
+        query_us_p99: query.p99,
+        query_us_max: query.max,
+        overruns: has_deadline.then_some(clock.overruns),
+        overrun_us_max: has_deadline.then_some(clock.overrun_us_max),
+        late_by_itself: has_deadline.then_some(clock.late_by_itself),
+        idle_loops: has_deadline.then_some(clock.idle_loops),
+        idle_overruns: has_deadline.then_some(clock.idle_overruns),
+        idle_overrun_us_max: has_deadline.then_some(clock.idle_overrun_us_max),
+    }
+}
+
+/// How far estimates are from what there is.
+#[derive(Default)]
+struct Errors {
+    penetration_mm: Vec<f64>,
+    bound_mm: Vec<f64>,
+    force: Vec<f64>,
+    complete: usize,
+}
+
+impl Errors {
+    fn add<F: DistanceField>(
+        &mut self,
+        query: &Query<'_, F>,
+        center: Vec3,
+        estimate: &Estimate,
+    ) -> Result<(), String> {
+        let depth = |contact: Option<vps_core::Contact>| contact.map_or(0.0, |c| c.penetration);
+        let deepest = depth(query.deepest());
+        let wrench = query.wrench(center, Weight::Area);
+        let too_little = f64::from(deepest - depth(estimate.deepest)) * 1e3;
+        let too_much = f64::from(estimate.penetration_bound - deepest) * 1e3;
+        if too_little < 0.0 || too_much < 0.0 {
+            return Err(format!(
+                "penetration {deepest} m is estimated to be from {} to {} m",
+                depth(estimate.deepest),
+                estimate.penetration_bound
+            ));
+        }
+        self.penetration_mm.push(too_little);
+        self.bound_mm.push(too_much);
+        let force = wrench.force.length();
+        if force > 0.0 {
+            let difference = estimate.wrench.force.distance(wrench.force);
+            self.force.push(f64::from(difference / force));
+        }
+        Ok(())
+    }
+}
+
+/// How long queries took.
+#[derive(Default)]
+struct Clock {
+    query_us: Vec<f64>,
+    overruns: usize,
+    overrun_us_max: f64,
+    late_by_itself: usize,
+    idle_loops: usize,
+    idle_overruns: usize,
+    idle_overrun_us_max: f64,
+}
+
+impl Clock {
+    fn ended(&mut self, took: Duration, limit: Limit, mut again: impl FnMut() -> Duration) {
+        self.query_us.push(took.as_secs_f64() * 1e6);
+        if let Limit::Deadline(deadline) = limit
+            && took > deadline
+        {
+            self.overruns += 1;
+            self.overrun_us_max = self.overrun_us_max.max(beyond_us(took, deadline));
+            let is_late = (1..TRIES).all(|_| again() > deadline);
+            self.late_by_itself += usize::from(is_late);
+        }
+    }
+
+    fn idled(&mut self, took: Duration, deadline: Duration) {
+        self.idle_loops += 1;
+        if took > deadline {
+            self.idle_overruns += 1;
+            self.idle_overrun_us_max = self.idle_overrun_us_max.max(beyond_us(took, deadline));
+        }
+    }
+}
+
+fn beyond_us(took: Duration, deadline: Duration) -> f64 {
+    (took - deadline).as_secs_f64() * 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_query_is_late_by_itself_if_it_never_ends_in_time() {
+        let us = Duration::from_micros;
+        let limit = Limit::Deadline(us(100));
+        let mut clock = Clock::default();
+        clock.ended(us(100), limit, || us(500));
+        assert_eq!((clock.overruns, clock.late_by_itself), (0, 0));
+        let mut tries = 0;
+        clock.ended(us(130), limit, || {
+            tries += 1;
+            us(if tries == TRIES - 1 { 90 } else { 101 })
+        });
+        assert_eq!((clock.overruns, clock.late_by_itself), (1, 0));
+        clock.ended(us(120), limit, || us(101));
+        assert_eq!((clock.overruns, clock.late_by_itself), (2, 1));
+        assert!((clock.overrun_us_max - 30.0).abs() < 1e-6);
+        clock.ended(us(9000), Limit::None, || us(9000));
+        assert_eq!((clock.overruns, clock.query_us.len()), (2, 4));
+    }
+}

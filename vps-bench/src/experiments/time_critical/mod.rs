@@ -1,0 +1,223 @@
+//! The time-critical query (section 5, future work): what it knows when its budget is over, and how
+//! well it keeps a deadline.
+
+mod measure;
+mod quantiles;
+mod show;
+mod summary;
+
+use std::path::Path;
+use std::time::Duration;
+
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+use vps_compare::{Ground, Scene};
+use vps_rapier::VpsShape;
+
+use super::{Error, Experiment, Measured};
+use crate::algorithms::{Algorithms, Method, SamplingName};
+use crate::archive::Rows;
+use crate::claims::Tables;
+use crate::config::{not_negative, positive};
+use crate::job::Job;
+use crate::lab::Lab;
+use crate::page::Block;
+use measure::{Poses, measure};
+
+/// What is asked, and how often.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    /// A name in `models.toml` or the path of a mesh.
+    model: String,
+    /// Metres a unit of the model is long.
+    scale: f64,
+    /// A box.
+    ground_extents_m: [f64; 3],
+    /// How deep the body is, from and to; negative above the ground.
+    depth_m: [f64; 2],
+    /// How far it is from the middle of the ground at most, along either side.
+    aside_m: f64,
+    /// A case each: so many points may be tested.
+    budget_points: Vec<u64>,
+    /// A case each: the query must have ended by then.
+    deadline_us: Vec<u64>,
+    /// The query is told to end so long before its deadline.
+    reserve_us: u64,
+    /// It looks at the clock every so many times it is asked whether to go on.
+    clock_every: u32,
+    poses_per_batch: u32,
+    /// Poses for a deadline, and for a number of points.
+    deadline_batches: u32,
+    budget_batches: u32,
+    quick_batches: u32,
+    seed: u64,
+    /// Of the method `vps`, with voxels of the ground.
+    algorithms: Vec<String>,
+}
+
+/// What ends a query.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Limit {
+    Points(u64),
+    Deadline(Duration),
+    /// Nothing: all is found.
+    None,
+}
+
+impl Limit {
+    fn case(self) -> String {
+        match self {
+            Self::Points(points) => format!("{points}points"),
+            Self::Deadline(time) => format!("{}us", time.as_micros()),
+            Self::None => "unlimited".into(),
+        }
+    }
+}
+
+impl Settings {
+    /// When a query is told to end that has a deadline.
+    fn told(&self, deadline: Duration) -> Duration {
+        deadline.saturating_sub(Duration::from_micros(self.reserve_us))
+    }
+
+    fn points(&self) -> impl Iterator<Item = Limit> {
+        self.budget_points.iter().copied().map(Limit::Points)
+    }
+
+    fn deadlines(&self) -> impl Iterator<Item = Limit> {
+        let times = self.deadline_us.iter().copied();
+        times.map(Duration::from_micros).map(Limit::Deadline)
+    }
+
+    fn limits(&self) -> impl Iterator<Item = Limit> {
+        self.points().chain([Limit::None]).chain(self.deadlines())
+    }
+}
+
+impl Experiment for Settings {
+    fn check(&self) -> Result<(), String> {
+        positive("time_critical.scale", self.scale)?;
+        not_negative("time_critical.aside_m", self.aside_m)?;
+        for extent in self.ground_extents_m {
+            positive("time_critical.ground_extents_m", extent)?;
+        }
+        let [from, to] = self.depth_m;
+        if !(from < to && from.is_finite() && to.is_finite()) {
+            return Err("time_critical.depth_m must grow".into());
+        }
+        for &points in &self.budget_points {
+            positive("time_critical.budget_points", points as f64)?;
+        }
+        for &deadline in &self.deadline_us {
+            if deadline <= self.reserve_us {
+                return Err(
+                    "time_critical.deadline_us must be above time_critical.reserve_us".into(),
+                );
+            }
+        }
+        let counts = [
+            self.clock_every,
+            self.poses_per_batch,
+            self.deadline_batches,
+            self.budget_batches,
+            self.quick_batches,
+        ];
+        if counts.contains(&0) {
+            return Err(
+                "time_critical.clock_every, poses_per_batch, deadline_batches, budget_batches and \
+                 quick_batches must be 1 or more"
+                    .into(),
+            );
+        }
+        if self.algorithms.is_empty() {
+            return Err("time_critical.algorithms must not be empty".into());
+        }
+        Ok(())
+    }
+
+    fn algorithms(&self) -> Vec<&str> {
+        self.algorithms.iter().map(String::as_str).collect()
+    }
+
+    fn jobs(&self, quick: bool) -> Vec<Job> {
+        let batches = |limit| match limit {
+            _ if quick => self.quick_batches,
+            Limit::Deadline(_) => self.deadline_batches,
+            Limit::Points(_) | Limit::None => self.budget_batches,
+        };
+        let mut jobs = Vec::new();
+        for seed in 0..self.deadline_batches.max(self.budget_batches) {
+            for limit in self.limits().filter(|limit| seed < batches(*limit)) {
+                jobs.extend(self.algorithms.iter().map(|algorithm| Job {
+                    case: limit.case(),
+                    algorithm: algorithm.clone(),
+                    seed,
+                }));
+            }
+        }
+        jobs
+    }
+
+    fn settings(&self) -> Result<String, Error> {
+        let of_jobs = Self {
+            budget_points: Vec::new(),
+            deadline_us: Vec::new(),
+            deadline_batches: 0,
+            budget_batches: 0,
+            quick_batches: 0,
+            algorithms: Vec::new(),
+            ..self.clone()
+        };
+        Ok(serde_json::to_string(&of_jobs)?)
+    }
+
+    fn identity(&self, lab: &Lab) -> Result<String, String> {
+        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    }
+
+    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+        let Method::Vps(method) = &lab.algorithms.get(&job.algorithm)?.method else {
+            return Err("only the method vps has a time-critical query".into());
+        };
+        let limit = self.limits().find(|limit| limit.case() == job.case);
+        let limit = limit.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let body = lab.body(&self.model, self.scale)?;
+        let scene = Scene {
+            body: &body.mesh,
+            ground: Ground::Cuboid(self.ground_extents_m),
+        };
+        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
+        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
+        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let shape = prepared.body.as_shape::<VpsShape>();
+        let ground = prepared.ground.as_shape::<VpsShape>();
+        let (Some(shape), Some(ground)) = (shape, ground) else {
+            return Err("the ground needs ground_voxel_size_m".into());
+        };
+        let poses = Poses::of(self, &body, job.seed);
+        let (tree, map) = (&shape.asset().tree, &ground.asset().voxelmap);
+        let center = body.mass.center();
+        let row = match method.sampling {
+            SamplingName::Trilinear => measure(self, limit, tree, &map.trilinear(), center, &poses),
+            SamplingName::Local => measure(self, limit, tree, &map.local(), center, &poses),
+        };
+        Ok(Measured {
+            rows: Rows::of(&[row?])?,
+            preparation: ready.preparation.clone(),
+        })
+    }
+
+    fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
+        summary::summarize(rows)
+    }
+
+    fn present(
+        &self,
+        tables: &Tables,
+        algorithms: &Algorithms,
+        folder: &Path,
+    ) -> Result<Vec<Block>, Error> {
+        show::present(self, tables, algorithms, folder)
+    }
+}
