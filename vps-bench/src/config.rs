@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
-use crate::experiments::{Experiment, drop};
+use crate::experiments::{Experiment, accuracy, drop, replay};
 
 /// Why a TOML file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +56,10 @@ pub(crate) struct ExperimentFile {
     pub(crate) misleads: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drop: Option<drop::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    replay: Option<replay::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    accuracy: Option<accuracy::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -80,17 +84,24 @@ impl ExperimentFile {
 
     /// Takes another model, if it is of a kind that has one.
     pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) -> Result<(), String> {
-        match &mut self.drop {
-            Some(drop) => drop.set_model(model, scale),
-            None => return Err(format!("`{}` has no model to be replaced", self.title)),
+        match (&mut self.drop, &mut self.replay) {
+            (Some(drop), _) => drop.set_model(model, scale),
+            (_, Some(replay)) => replay.set_model(model, scale),
+            _ => return Err(format!("`{}` has no model to be replaced", self.title)),
         }
         self.kind()?.check()
     }
 
     /// What is to be done.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
-        let kinds: [(&str, Option<&dyn Experiment>); 1] =
-            [("drop", self.drop.as_ref().map(|s| s as &dyn Experiment))];
+        fn kind<E: Experiment>(settings: &Option<E>) -> Option<&dyn Experiment> {
+            settings.as_ref().map(|s| s as &dyn Experiment)
+        }
+        let kinds = [
+            ("drop", kind(&self.drop)),
+            ("replay", kind(&self.replay)),
+            ("accuracy", kind(&self.accuracy)),
+        ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);
         match (there.next(), there.next()) {

@@ -17,6 +17,7 @@ mod models;
 mod page;
 mod report;
 mod run;
+mod stats;
 mod timed;
 
 use std::path::PathBuf;

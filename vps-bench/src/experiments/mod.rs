@@ -1,7 +1,10 @@
 //! The kinds of experiments. Each has settings in TOML, makes jobs of them, runs one job to rows,
 //! sums rows up in tables, and says what the tables show.
 
+pub(crate) mod accuracy;
 pub(crate) mod drop;
+mod power_law;
+pub(crate) mod replay;
 
 use std::path::Path;
 
