@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
-use crate::experiments::{Experiment, accuracy, drop, replay};
+use crate::experiments::{Experiment, accuracy, drop, replay, scaling};
 
 /// Why a TOML file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +60,8 @@ pub(crate) struct ExperimentFile {
     replay: Option<replay::Settings>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     accuracy: Option<accuracy::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scaling: Option<scaling::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -101,6 +103,7 @@ impl ExperimentFile {
             ("drop", kind(&self.drop)),
             ("replay", kind(&self.replay)),
             ("accuracy", kind(&self.accuracy)),
+            ("scaling", kind(&self.scaling)),
         ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);

@@ -5,6 +5,7 @@ pub(crate) mod accuracy;
 pub(crate) mod drop;
 mod power_law;
 pub(crate) mod replay;
+pub(crate) mod scaling;
 
 use std::path::Path;
 
