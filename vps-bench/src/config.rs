@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
-use crate::experiments::{Experiment, bounce, drop, stack, time_critical};
+use crate::experiments::{
+    Experiment, accuracy, bounce, drop, replay, scaling, stack, time_critical,
+};
 
 /// Why a TOML file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -62,6 +64,12 @@ pub(crate) struct ExperimentFile {
     stack: Option<stack::Settings>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     time_critical: Option<time_critical::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    replay: Option<replay::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    accuracy: Option<accuracy::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scaling: Option<scaling::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -86,9 +94,10 @@ impl ExperimentFile {
 
     /// Takes another model, if it is of a kind that has one.
     pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) -> Result<(), String> {
-        match &mut self.drop {
-            Some(drop) => drop.set_model(model, scale),
-            None => return Err(format!("`{}` has no model to be replaced", self.title)),
+        match (&mut self.drop, &mut self.replay) {
+            (Some(drop), _) => drop.set_model(model, scale),
+            (_, Some(replay)) => replay.set_model(model, scale),
+            _ => return Err(format!("`{}` has no model to be replaced", self.title)),
         }
         self.kind()?.check()
     }
@@ -102,14 +111,17 @@ impl ExperimentFile {
 
     /// What is to be done.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
-        let kinds: [(&str, Option<&dyn Experiment>); 4] = [
-            ("drop", self.drop.as_ref().map(|s| s as &dyn Experiment)),
-            ("bounce", self.bounce.as_ref().map(|s| s as &dyn Experiment)),
-            ("stack", self.stack.as_ref().map(|s| s as &dyn Experiment)),
-            (
-                "time_critical",
-                self.time_critical.as_ref().map(|s| s as &dyn Experiment),
-            ),
+        fn kind<E: Experiment>(settings: &Option<E>) -> Option<&dyn Experiment> {
+            settings.as_ref().map(|s| s as &dyn Experiment)
+        }
+        let kinds = [
+            ("drop", kind(&self.drop)),
+            ("bounce", kind(&self.bounce)),
+            ("stack", kind(&self.stack)),
+            ("time_critical", kind(&self.time_critical)),
+            ("replay", kind(&self.replay)),
+            ("accuracy", kind(&self.accuracy)),
+            ("scaling", kind(&self.scaling)),
         ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use polars::prelude::*;
+use serde::Serialize;
 use vps_build::{FileError, write_atomically};
 
 /// Why a table cannot be read or written.
@@ -37,8 +38,16 @@ impl Columns {
             path: path.into(),
             source,
         };
-        let mut reader = csv::Reader::from_path(path).map_err(csv_error)?;
-        let own = reader.headers().map_err(csv_error)?.clone();
+        let reader = csv::Reader::from_path(path).map_err(csv_error)?;
+        self.append_all(reader, same).map_err(csv_error)
+    }
+
+    fn append_all(
+        &mut self,
+        mut reader: csv::Reader<impl std::io::Read>,
+        same: &[(&str, String)],
+    ) -> csv::Result<()> {
+        let own = reader.headers()?.clone();
         let fixed = same.iter().map(|(name, _)| (*name).to_owned());
         let names: Vec<_> = fixed.chain(own.iter().map(String::from)).collect();
         if self.names.is_empty() {
@@ -46,10 +55,10 @@ impl Columns {
             self.names = names;
         } else if self.names != names {
             let what = format!("has columns {names:?}, the others {:?}", self.names);
-            return Err(csv_error(std::io::Error::other(what).into()));
+            return Err(std::io::Error::other(what).into());
         }
         for record in reader.records() {
-            let record = record.map_err(csv_error)?;
+            let record = record?;
             let fixed = same.iter().map(|(_, value)| value.as_str());
             for (column, value) in self.values.iter_mut().zip(fixed.chain(&record)) {
                 column.push(value.to_owned());
@@ -80,6 +89,20 @@ fn column(name: &str, values: &[String]) -> Column {
         Some(numbers) => Column::new(name.into(), numbers),
         None => Column::new(name.into(), values),
     }
+}
+
+/// A table of rows; the names of fields are those of the columns.
+pub(crate) fn of<R: Serialize>(
+    rows: impl IntoIterator<Item = R>,
+) -> Result<DataFrame, Box<dyn std::error::Error>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    let bytes = writer.into_inner()?;
+    let mut columns = Columns::default();
+    columns.append_all(csv::Reader::from_reader(&*bytes), &[])?;
+    Ok(columns.into_frame()?)
 }
 
 /// Reads a CSV file.

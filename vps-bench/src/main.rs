@@ -21,6 +21,7 @@ mod pin;
 mod report;
 mod run;
 mod scratch;
+mod stats;
 mod timed;
 
 use std::path::PathBuf;

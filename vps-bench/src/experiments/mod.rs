@@ -1,9 +1,13 @@
 //! The kinds of experiments. Each has settings in TOML, makes jobs of them, runs one job to rows,
 //! sums rows up in tables, and says what the tables show.
 
+pub(crate) mod accuracy;
 pub(crate) mod bounce;
 pub(crate) mod drop;
 mod orientation;
+mod power_law;
+pub(crate) mod replay;
+pub(crate) mod scaling;
 pub(crate) mod stack;
 pub(crate) mod time_critical;
 mod world;

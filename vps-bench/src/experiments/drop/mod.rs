@@ -5,18 +5,21 @@ mod simulate;
 mod summary;
 
 use std::path::Path;
+use std::rc::Rc;
 
 use polars::prelude::DataFrame;
+use rapier3d::math::Pose;
 use serde::{Deserialize, Serialize};
 use vps_compare::{Ground, Scene};
 
+use self::simulate::StepRow;
 use super::{Error, Experiment, Measured};
 use crate::algorithms::Algorithms;
 use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::{not_negative, positive};
 use crate::job::Job;
-use crate::lab::Lab;
+use crate::lab::{Body, Lab, Ready};
 use crate::page::Block;
 
 /// What falls, and how.
@@ -31,22 +34,22 @@ pub(crate) struct Settings {
     friction: f32,
     restitution: f32,
     /// A box.
-    ground_extents_m: [f64; 3],
+    pub(super) ground_extents_m: [f64; 3],
     gravity_m_s2: f32,
     /// Of the centre of mass above the ground.
     drop_height_m: f32,
     /// How far ahead contacts are found, for all algorithms.
-    prediction_m: f32,
+    pub(super) prediction_m: f32,
     duration_s: f64,
     /// What counts, from and to.
     measured_s: [f64; 2],
     /// A case each.
-    frequencies_hz: Vec<u32>,
+    pub(super) frequencies_hz: Vec<u32>,
     /// Random start orientations, and how many of them in a quick run.
     orientations: u32,
     quick_orientations: u32,
     seed: u64,
-    algorithms: Vec<String>,
+    pub(super) algorithms: Vec<String>,
     /// What ratios refer to.
     reference: Option<String>,
     show: Vec<Show>,
@@ -85,6 +88,15 @@ impl Settings {
         format!("{frequency}hz")
     }
 
+    /// How many start orientations there are.
+    pub(super) fn seeds(&self, quick: bool) -> u32 {
+        if quick {
+            self.quick_orientations
+        } else {
+            self.orientations
+        }
+    }
+
     /// The number of steps at a frequency.
     fn steps(&self, frequency: u32) -> u32 {
         (self.duration_s * f64::from(frequency)).round() as u32
@@ -100,6 +112,31 @@ impl Settings {
     pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
         self.model = model.into();
         self.scale = scale.unwrap_or(self.scale);
+    }
+
+    /// The body, and an algorithm made ready for it and the ground.
+    pub(super) fn ready(
+        &self,
+        lab: &Lab,
+        algorithm: &str,
+    ) -> Result<(Rc<Body>, Rc<Ready>), String> {
+        let body = lab.body(&self.model, self.scale)?;
+        let scene = Scene {
+            body: &body.mesh,
+            ground: Ground::Cuboid(self.ground_extents_m),
+        };
+        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
+        let ready = lab.ready(algorithm, &identity, &scene)?;
+        Ok((body, ready))
+    }
+
+    /// The poses the first algorithm is asked about at the first frequency: one a step, the upper
+    /// side of the ground being at height 0.
+    pub(super) fn trace(&self, lab: &Lab, seed: u32) -> Result<Vec<Pose>, String> {
+        let (body, ready) = self.ready(lab, &self.algorithms[0])?;
+        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let steps = self.simulate(&body, prepared, self.frequencies_hz[0], seed)?;
+        Ok(steps.iter().map(StepRow::pose).collect())
     }
 
     fn paper_value(&self, algorithm: &str) -> Option<&PaperValue> {
@@ -154,11 +191,7 @@ impl Experiment for Settings {
     }
 
     fn jobs(&self, quick: bool) -> Vec<Job> {
-        let seeds = if quick {
-            self.quick_orientations
-        } else {
-            self.orientations
-        };
+        let seeds = self.seeds(quick);
         let mut jobs = Vec::new();
         for seed in 0..seeds {
             for &frequency in &self.frequencies_hz {
@@ -194,13 +227,7 @@ impl Experiment for Settings {
     }
 
     fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        let body = lab.body(&self.model, self.scale)?;
-        let scene = Scene {
-            body: &body.mesh,
-            ground: Ground::Cuboid(self.ground_extents_m),
-        };
-        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
-        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
+        let (body, ready) = self.ready(lab, &job.algorithm)?;
         let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
         let frequency = self
             .frequencies_hz

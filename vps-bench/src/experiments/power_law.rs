@@ -1,0 +1,89 @@
+//! Figures of power laws: both axes logarithmic, so that y = c x^p is a line of slope p.
+
+use std::path::Path;
+
+use plotters::style::RGBColor;
+
+use super::Error;
+use crate::figure::{Axis, Curve, Figure, decades};
+use crate::page::{Block, FigureLink, fixed};
+use crate::stats::exponent;
+
+/// Values over a size.
+pub(super) struct Series {
+    pub(super) label: String,
+    pub(super) color: RGBColor,
+    pub(super) points: Vec<(f64, f64)>,
+}
+
+/// What a figure of series is called.
+pub(super) struct Labels<'l> {
+    /// Of its files.
+    pub(super) stem: &'l str,
+    pub(super) title: &'l str,
+    pub(super) x: &'l str,
+    pub(super) y: &'l str,
+}
+
+/// Colours that are told apart also by those who see fewer (Okabe and Ito).
+pub(super) fn color(number: usize) -> RGBColor {
+    const COLORS: [RGBColor; 7] = [
+        RGBColor(0, 114, 178),
+        RGBColor(213, 94, 0),
+        RGBColor(0, 158, 115),
+        RGBColor(204, 121, 167),
+        RGBColor(230, 159, 0),
+        RGBColor(86, 180, 233),
+        RGBColor(0, 0, 0),
+    ];
+    COLORS[number % COLORS.len()]
+}
+
+/// Writes a figure with the exponent of each series in its label. What is not positive has no
+/// place in it.
+pub(super) fn figure(
+    labels: &Labels<'_>,
+    series: impl IntoIterator<Item = Series>,
+    folder: &Path,
+) -> Result<Block, Error> {
+    let is_positive = |v: &f64| *v > 0.0 && v.is_finite();
+    let mut curves = Vec::new();
+    for one in series {
+        let slope = exponent(one.points.iter().copied());
+        let points = one.points.into_iter();
+        let run: Vec<_> = points
+            .filter(|(x, y)| is_positive(x) && is_positive(y))
+            .collect();
+        if !run.is_empty() {
+            curves.push(Curve {
+                label: format!("{} (slope {})", one.label, fixed(slope, 2)),
+                color: one.color,
+                runs: vec![run],
+                has_points: true,
+            });
+        }
+    }
+    if curves.is_empty() {
+        return Ok(Block::Text(format!("{}: no values.", labels.title)));
+    }
+    let ends = |at: fn(&(f64, f64)) -> f64| {
+        let values: Vec<_> = curves.iter().flat_map(|c| &c.runs[0]).map(at).collect();
+        decades(&[], &values, 1e-9)
+    };
+    let (x, y) = (ends(|p| p.0), ends(|p| p.1));
+    // Room for the legend above the curves.
+    let room = 10_f64.powf((0.4 * curves.len() as f64).ceil());
+    let drawn = Figure {
+        title: labels.title.into(),
+        x: Axis::logarithmic(labels.x, x),
+        y: Axis::logarithmic(labels.y, y.start..y.end * room),
+        curves,
+        marks: Vec::new(),
+        marks_label: String::new(),
+    };
+    drawn.write(folder, labels.stem)?;
+    Ok(Block::Figure(FigureLink {
+        file: format!("{}.svg", labels.stem),
+        caption: drawn.title,
+    }))
+}

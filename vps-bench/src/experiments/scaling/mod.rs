@@ -1,0 +1,265 @@
+//! How time grows with what is asked for, one quantity at a time.
+
+mod bodies;
+mod queries;
+mod show;
+mod summary;
+
+use std::path::Path;
+
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+
+use super::{Error, Experiment, Measured};
+use crate::algorithms::Algorithms;
+use crate::archive::Rows;
+use crate::claims::Tables;
+use crate::config::positive;
+use crate::job::Job;
+use crate::lab::{Lab, Preparation};
+use crate::page::Block;
+
+/// What grows. What does not grow is what it is for the fine shell.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    model: String,
+    scale: f64,
+    ground_extents_m: [f64; 3],
+    ground_voxel_size_m: f64,
+    /// Up to which distance a manifold is asked for; all other queries ask for overlaps.
+    prediction_m: f32,
+    /// Of the pointshell.
+    points: Vec<u32>,
+    /// Of the voxelmap a small shell is pressed into.
+    voxel_sizes_m: Vec<f64>,
+    /// Segments of a torus, which has the square of it as triangles.
+    segments: Vec<u32>,
+    /// How far the lowest point is below the ground.
+    depths_m: Vec<f32>,
+    /// Points, depth and voxel size of the shell, where they do not grow.
+    fixed_points: u32,
+    fixed_depth_m: f32,
+    fixed_voxel_size_m: f64,
+    /// Of a query: random ones, each asked about so often; the least time of a pose counts.
+    poses: u32,
+    repeats: u32,
+    bodies: Bodies,
+    seed: u64,
+}
+
+/// Many bodies at rest.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Bodies {
+    algorithms: Vec<String>,
+    counts: Vec<u32>,
+    /// Between the origins of neighbours.
+    spacing_m: f32,
+    mass_kg: f32,
+    gravity_m_s2: f32,
+    frequency_hz: f32,
+    /// Steps until they rest, and those that are timed.
+    settling_steps: u32,
+    timed_steps: u32,
+}
+
+/// What grows in a case.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Case {
+    Points,
+    VoxelSize,
+    Triangles,
+    Depth,
+    Bodies,
+}
+
+/// A query of a pointshell.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Ask {
+    Touches,
+    Deepest,
+    Manifold,
+    Wrench,
+    /// All points one by one, as without a tree.
+    Flat,
+    /// The triangle mesh of parry, for comparison.
+    Trimesh,
+}
+
+/// A time.
+#[derive(Clone, Debug, Serialize)]
+struct TimeRow {
+    /// What grows, in the unit of its case.
+    size: f64,
+    sample: u32,
+    /// Of a query; or of a step, divided by the number of bodies.
+    time_us: f64,
+    /// Points that overlap; or contacts of the engine, divided by the number of bodies.
+    contacts: f64,
+}
+
+impl Case {
+    const ALL: [Self; 5] = [
+        Self::Points,
+        Self::VoxelSize,
+        Self::Triangles,
+        Self::Depth,
+        Self::Bodies,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::VoxelSize => "voxel_size",
+            Self::Triangles => "triangles",
+            Self::Depth => "depth",
+            Self::Bodies => "bodies",
+        }
+    }
+
+    /// What grows, with its unit.
+    fn label(self) -> &'static str {
+        match self {
+            Self::Points => "points of the shell",
+            Self::VoxelSize => "voxel size (mm)",
+            Self::Triangles => "source triangles",
+            Self::Depth => "depth (mm)",
+            Self::Bodies => "bodies",
+        }
+    }
+
+    fn asks(self) -> &'static [Ask] {
+        const QUERIES: [Ask; 5] = [
+            Ask::Touches,
+            Ask::Deepest,
+            Ask::Manifold,
+            Ask::Wrench,
+            Ask::Flat,
+        ];
+        match self {
+            Self::Points | Self::Depth => &QUERIES,
+            Self::VoxelSize => &[Ask::Touches, Ask::Deepest, Ask::Manifold, Ask::Wrench],
+            Self::Triangles => &[Ask::Deepest, Ask::Manifold, Ask::Wrench, Ask::Trimesh],
+            Self::Bodies => &[],
+        }
+    }
+}
+
+impl Ask {
+    const ALL: [Self; 6] = [
+        Self::Touches,
+        Self::Deepest,
+        Self::Manifold,
+        Self::Wrench,
+        Self::Flat,
+        Self::Trimesh,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Touches => "touches",
+            Self::Deepest => "deepest",
+            Self::Manifold => "manifold",
+            Self::Wrench => "wrench",
+            Self::Flat => "flat",
+            Self::Trimesh => "trimesh",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Touches => "does it touch",
+            Self::Deepest => "deepest contact",
+            Self::Manifold => "four contacts",
+            Self::Wrench => "force and torque of all contacts",
+            Self::Flat => "all points one by one",
+            Self::Trimesh => "triangle mesh of parry",
+        }
+    }
+}
+
+impl Experiment for Settings {
+    fn check(&self) -> Result<(), String> {
+        positive("scaling.scale", self.scale)?;
+        positive("scaling.ground_voxel_size_m", self.ground_voxel_size_m)?;
+        positive("scaling.fixed_voxel_size_m", self.fixed_voxel_size_m)?;
+        positive("scaling.prediction_m", self.prediction_m.into())?;
+        positive("scaling.fixed_points", self.fixed_points.into())?;
+        positive("scaling.poses", self.poses.into())?;
+        positive("scaling.repeats", self.repeats.into())?;
+        positive("scaling.bodies.spacing_m", self.bodies.spacing_m.into())?;
+        positive("scaling.bodies.mass_kg", self.bodies.mass_kg.into())?;
+        positive(
+            "scaling.bodies.frequency_hz",
+            self.bodies.frequency_hz.into(),
+        )?;
+        positive("scaling.bodies.timed_steps", self.bodies.timed_steps.into())?;
+        let numbers = self.points.iter().chain(&self.segments);
+        for &number in numbers.chain(&self.bodies.counts) {
+            positive("scaling.points, segments and bodies.counts", number.into())?;
+        }
+        let depths = self.depths_m.iter().map(|d| f64::from(*d));
+        for length in depths.chain(self.voxel_sizes_m.iter().copied()) {
+            positive("scaling.depths_m and voxel_sizes_m", length)?;
+        }
+        Ok(())
+    }
+
+    fn algorithms(&self) -> Vec<&str> {
+        self.bodies.algorithms.iter().map(String::as_str).collect()
+    }
+
+    fn jobs(&self, quick: bool) -> Vec<Job> {
+        let mut jobs = Vec::new();
+        for case in Case::ALL {
+            let asks = case.asks().iter().map(|ask| ask.name().to_owned());
+            let algorithms = self.bodies.algorithms.iter().cloned();
+            let algorithms = algorithms.filter(|_| case == Case::Bodies);
+            jobs.extend(asks.chain(algorithms).map(|algorithm| Job {
+                case: case.name().into(),
+                algorithm,
+                seed: 0,
+            }));
+        }
+        if quick {
+            jobs.retain(|job| job.algorithm != Ask::Trimesh.name());
+        }
+        jobs
+    }
+
+    fn settings(&self) -> Result<String, Error> {
+        Ok(serde_json::to_string(self)?)
+    }
+
+    fn identity(&self, lab: &Lab) -> Result<String, String> {
+        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    }
+
+    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+        let case = Case::ALL.into_iter().find(|case| case.name() == job.case);
+        let case = case.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let ask = Ask::ALL.into_iter().find(|ask| ask.name() == job.algorithm);
+        let rows = match ask {
+            Some(ask) => self.times(case, ask, lab)?,
+            None => self.steps(&job.algorithm, lab)?,
+        };
+        Ok(Measured {
+            rows: Rows::of(&rows)?,
+            preparation: Preparation::default(),
+        })
+    }
+
+    fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
+        summary::summarize(self, rows)
+    }
+
+    fn present(
+        &self,
+        tables: &Tables,
+        algorithms: &Algorithms,
+        folder: &Path,
+    ) -> Result<Vec<Block>, Error> {
+        show::present(self, tables, algorithms, folder)
+    }
+}
