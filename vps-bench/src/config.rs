@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
-use crate::experiments::{Experiment, drop};
+use crate::experiments::{Experiment, drop, structures};
 
 /// Why a TOML file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +56,8 @@ pub(crate) struct ExperimentFile {
     pub(crate) misleads: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drop: Option<drop::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    structures: Option<structures::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -80,17 +82,23 @@ impl ExperimentFile {
 
     /// Takes another model, if it is of a kind that has one.
     pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) -> Result<(), String> {
-        match &mut self.drop {
-            Some(drop) => drop.set_model(model, scale),
-            None => return Err(format!("`{}` has no model to be replaced", self.title)),
+        match (&mut self.drop, &mut self.structures) {
+            (Some(drop), _) => drop.set_model(model, scale),
+            (_, Some(structures)) => structures.set_model(model, scale),
+            (None, None) => return Err(format!("`{}` has no model to be replaced", self.title)),
         }
         self.kind()?.check()
     }
 
     /// What is to be done.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
-        let kinds: [(&str, Option<&dyn Experiment>); 1] =
-            [("drop", self.drop.as_ref().map(|s| s as &dyn Experiment))];
+        let kinds: [(&str, Option<&dyn Experiment>); 2] = [
+            ("drop", self.drop.as_ref().map(|s| s as &dyn Experiment)),
+            (
+                "structures",
+                self.structures.as_ref().map(|s| s as &dyn Experiment),
+            ),
+        ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);
         match (there.next(), there.next()) {

@@ -15,6 +15,7 @@ mod job;
 mod lab;
 mod models;
 mod page;
+mod render;
 mod report;
 mod run;
 mod timed;

@@ -2,6 +2,7 @@
 //! sums rows up in tables, and says what the tables show.
 
 pub(crate) mod drop;
+pub(crate) mod structures;
 
 use std::path::Path;
 
@@ -53,6 +54,15 @@ pub(crate) trait Experiment {
     /// Sums up the rows of all jobs (columns `case`, `algorithm`, `seed` and those of the rows) in
     /// small tables, which are kept.
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error>;
+
+    /// Draws into `folder` what needs more than the tables. It is called when all jobs are done and
+    /// their tables kept; a report shows the pictures that are there.
+    ///
+    /// # Errors
+    /// When something cannot be drawn or written.
+    fn draw(&self, _lab: &Lab, _folder: &Path) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Tables, figures (written into `folder`) and text, from the small tables alone.
     fn present(

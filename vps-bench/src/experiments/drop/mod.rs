@@ -7,7 +7,9 @@ mod summary;
 use std::path::Path;
 
 use polars::prelude::DataFrame;
+use rapier3d::math::Pose;
 use serde::{Deserialize, Serialize};
+use simulate::StepRow;
 use vps_compare::{Ground, Scene};
 
 use super::{Error, Experiment, Measured};
@@ -16,7 +18,7 @@ use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::{not_negative, positive};
 use crate::job::Job;
-use crate::lab::Lab;
+use crate::lab::{Lab, Preparation};
 use crate::page::Block;
 
 /// What falls, and how.
@@ -100,6 +102,33 @@ impl Settings {
     pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
         self.model = model.into();
         self.scale = scale.unwrap_or(self.scale);
+    }
+
+    /// The steps of a job, and what its algorithm was made from.
+    fn simulated(&self, job: &Job, lab: &Lab) -> Result<(Vec<StepRow>, Preparation), String> {
+        let body = lab.body(&self.model, self.scale)?;
+        let scene = Scene {
+            body: &body.mesh,
+            ground: Ground::Cuboid(self.ground_extents_m),
+        };
+        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
+        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
+        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let frequency = self
+            .frequencies_hz
+            .iter()
+            .find(|f| Self::case(**f) == job.case);
+        let frequency = *frequency.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let rows = self.simulate(&body, prepared, frequency, job.seed)?;
+        Ok((rows, ready.preparation.clone()))
+    }
+
+    /// The poses of the first job, step by step, and the time between two steps in seconds.
+    pub(crate) fn poses(&self, lab: &Lab) -> Result<(Vec<Pose>, f64), String> {
+        let jobs = self.jobs(true);
+        let (rows, _) = self.simulated(jobs.first().ok_or("nothing falls")?, lab)?;
+        let poses = rows.iter().map(StepRow::pose).collect();
+        Ok((poses, 1.0 / f64::from(self.frequencies_hz[0])))
     }
 
     fn paper_value(&self, algorithm: &str) -> Option<&PaperValue> {
@@ -194,23 +223,10 @@ impl Experiment for Settings {
     }
 
     fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        let body = lab.body(&self.model, self.scale)?;
-        let scene = Scene {
-            body: &body.mesh,
-            ground: Ground::Cuboid(self.ground_extents_m),
-        };
-        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
-        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
-        let frequency = self
-            .frequencies_hz
-            .iter()
-            .find(|f| Self::case(**f) == job.case);
-        let frequency = *frequency.ok_or_else(|| format!("no case `{}`", job.case))?;
-        let rows = self.simulate(&body, prepared, frequency, job.seed)?;
+        let (rows, preparation) = self.simulated(job, lab)?;
         Ok(Measured {
             rows: Rows::of(&rows)?,
-            preparation: ready.preparation.clone(),
+            preparation,
         })
     }
 

@@ -44,6 +44,14 @@ pub(super) struct StepRow {
     qw: f32,
 }
 
+impl StepRow {
+    /// The pose that was asked about.
+    pub(super) fn pose(&self) -> Pose {
+        let rotation = Quat::from_xyzw(self.qx, self.qy, self.qz, self.qw);
+        Pose::from_parts(Vector::new(self.x_m, self.y_m, self.z_m), rotation)
+    }
+}
+
 impl Settings {
     /// Simulates one start orientation with one algorithm; a row a step.
     ///
