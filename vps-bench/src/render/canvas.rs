@@ -15,6 +15,9 @@ pub(crate) struct Canvas {
 /// To the light, in the frame of the eye.
 const LIGHT: Vec3 = Vec3::new(-0.36, 0.58, 0.73);
 
+/// Pixels of the rim of a glass ball, whatever its size.
+const RIM: f32 = 1.6;
+
 /// What of a surface is seen without light.
 const AMBIENT: f32 = 0.42;
 
@@ -154,18 +157,17 @@ impl Canvas {
     }
 
     /// Balls of glass, which hide nothing: clear in the middle, dense at their rims. What is solid
-    /// must be drawn before.
-    pub(crate) fn glass(&mut self, view: &View, mut balls: Vec<(Vec3, f32, Color)>) {
+    /// must be drawn before. `density` is how dense they are in the middle, from 0 to 1.
+    pub(crate) fn glass(&mut self, view: &View, mut balls: Vec<(Vec3, f32, Color)>, density: f32) {
         let depth = |ball: &(Vec3, f32, Color)| view.at(ball.0, self.size).z;
         balls.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
         for (center, radius, color) in balls {
             let pixels = radius * view.scale(self.size[0]);
-            // A rim of a few pixels, whatever the size.
-            let rim = (1.0 - 2.5 * FINE as f32 / pixels.max(2.5 * FINE as f32)).max(0.5);
+            let rim = (1.0 - RIM * FINE as f32 / pixels).max(0.7);
             self.each_of_ball(view, (center, radius), |canvas, index, normal, depth| {
                 if depth > canvas.depths[index] {
                     let is_rim = normal.truncate().length() > rim;
-                    let density = if is_rim { 0.75 } else { 0.16 };
+                    let density = if is_rim { 0.75 } else { density };
                     let below = canvas.colors[index];
                     canvas.colors[index] = below.lerp(color, density);
                 }
@@ -249,9 +251,9 @@ mod tests {
         let (mut canvas, view) = front();
         canvas.triangle(&view, large(0.0), GREEN);
         let solid = middle(&canvas);
-        canvas.glass(&view, vec![(Vec3::new(0.0, 0.0, -0.4), 0.2, RED)]);
+        canvas.glass(&view, vec![(Vec3::new(0.0, 0.0, -0.4), 0.2, RED)], 0.2);
         assert_eq!(middle(&canvas), solid);
-        canvas.glass(&view, vec![(Vec3::new(0.0, 0.0, 0.4), 0.2, RED)]);
+        canvas.glass(&view, vec![(Vec3::new(0.0, 0.0, 0.4), 0.2, RED)], 0.2);
         let seen = middle(&canvas);
         assert!(seen.x > solid.x && seen.y > 0.0, "{seen}");
     }

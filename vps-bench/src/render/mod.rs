@@ -3,6 +3,7 @@
 
 mod canvas;
 pub(crate) mod colors;
+mod palette;
 mod sheet;
 mod view;
 

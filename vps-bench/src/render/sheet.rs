@@ -1,13 +1,12 @@
 //! Several canvases with text, as a PNG file.
 
-use std::cmp::Reverse;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use vps_build::write_atomically;
 
+use super::palette::palette;
 use super::{Canvas, Color, FINE};
 use crate::figure::{FONT, register_fonts};
 
@@ -90,33 +89,11 @@ impl Sheet {
         area.present().map_err(|e| e.to_string())
     }
 
-    /// The most common colours, and which of them each pixel has; it gets the nearest one.
-    fn palette(&self) -> (Vec<[u8; 3]>, Vec<u8>) {
-        let pixels = || self.bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]);
-        let mut counts: BTreeMap<[u8; 3], usize> = BTreeMap::new();
-        for color in pixels() {
-            *counts.entry(color).or_default() += 1;
-        }
-        let mut colors: Vec<_> = counts.keys().copied().collect();
-        colors.sort_by_key(|color| Reverse(counts[color]));
-        colors.truncate(256);
-        let distance = |a: [u8; 3], b: [u8; 3]| {
-            let square = |i: usize| u32::from(a[i].abs_diff(b[i])).pow(2);
-            square(0) + square(1) + square(2)
-        };
-        let nearest = |color: [u8; 3]| {
-            let by_distance = |i: &usize| distance(colors[*i], color);
-            (0..colors.len()).min_by_key(by_distance).unwrap_or(0) as u8
-        };
-        let index: BTreeMap<_, _> = counts.keys().map(|c| (*c, nearest(*c))).collect();
-        let indices = pixels().map(|color| index[&color]).collect();
-        (colors, indices)
-    }
-
     /// Writes a PNG file of 256 colours at most, which is a fraction of one with all.
     pub(crate) fn write(&self, path: &Path) -> Result<(), String> {
         let named = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-        let (palette, indices) = self.palette();
+        let pixels = self.bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]);
+        let (palette, indices) = palette(pixels);
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.size.0, self.size.1);
         encoder.set_color(png::ColorType::Indexed);

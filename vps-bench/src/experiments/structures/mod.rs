@@ -41,9 +41,11 @@ pub(crate) struct Settings {
     segments_level: u32,
     /// Voxels along the longest side where voxels are drawn one by one.
     drawn_voxels: u32,
-    /// How deep the body is in the ground where the traverse is drawn.
+    /// The step at whose pose the traverse is drawn, and how deep the body is put into the ground
+    /// then.
+    traverse_step: u32,
     traverse_depth_m: f32,
-    /// Steps of the fall that are drawn. The traverse is drawn at the pose of the last.
+    /// Steps of the fall that are drawn.
     fall_steps: Vec<u32>,
     /// The first job of these is what falls.
     fall: drop::Settings,

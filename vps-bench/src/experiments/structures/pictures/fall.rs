@@ -11,14 +11,14 @@ const TILE_M: f32 = 0.1;
 pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     let steps = &subject.settings.fall_steps;
     let columns = steps.len().min(4) as u32;
-    let mut panels = Panels::new(steps.len() as u32, columns, [1040 / columns, 330], 0);
+    let mut panels = Panels::new(steps.len() as u32, columns, [1040 / columns, 300], 0);
     let poses: Result<Vec<_>, _> = steps.iter().map(|step| subject.pose(*step)).collect();
     let (middle, longest) = subject.middle();
     for (step, pose) in steps.iter().zip(poses?) {
         let over = pose * middle;
         // Always as high, wherever the body rolls.
-        let at = Vec3::new(over.x, 0.75 * longest, over.z);
-        let view = View::from(30.0, 14.0, at, 2.1 * longest);
+        let at = Vec3::new(over.x, 0.52 * longest, over.z);
+        let view = View::from(30.0, 14.0, at, 1.65 * longest);
         let mut canvas = panels.canvas();
         ground(&mut canvas, &view, over);
         shadow(&mut canvas, &view, subject, pose);

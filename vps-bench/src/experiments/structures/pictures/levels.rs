@@ -11,7 +11,7 @@ const LEVELS: u32 = 6;
 pub(super) fn points(subject: &Subject<'_>) -> Result<Sheet, String> {
     let (_, longest) = subject.middle();
     let tree = &subject.fine.tree;
-    panels(subject, "points", |canvas, view, clusters, color| {
+    panels(subject, "points", 1.2, |canvas, view, clusters, color| {
         // Smaller where there are more of them.
         let radius = 0.075 * longest * (clusters.len() as f32).powf(-0.3);
         for cluster in clusters {
@@ -22,9 +22,9 @@ pub(super) fn points(subject: &Subject<'_>) -> Result<Sheet, String> {
 }
 
 pub(super) fn spheres(subject: &Subject<'_>) -> Result<Sheet, String> {
-    panels(subject, "spheres", |canvas, view, clusters, color| {
+    panels(subject, "spheres", 1.75, |canvas, view, clusters, color| {
         let ball = |c: &Cluster| (Vec3::from_array(c.center), c.radius, color);
-        canvas.glass(view, clusters.iter().map(ball).collect());
+        canvas.glass(view, clusters.iter().map(ball).collect(), 0.16);
     })
 }
 
@@ -32,10 +32,11 @@ pub(super) fn spheres(subject: &Subject<'_>) -> Result<Sheet, String> {
 fn panels(
     subject: &Subject<'_>,
     what: &str,
+    width: f32,
     draw: impl Fn(&mut Canvas, &View, &[Cluster], Color),
 ) -> Result<Sheet, String> {
     let tree = &subject.fine.tree;
-    let view = subject.view();
+    let view = subject.view(width);
     let last = tree.level_count().min(1 + LEVELS);
     let mut panels = Panels::new(last.max(2) - 1, 3, [350, 340], 0);
     for level in 2..=last {

@@ -135,10 +135,11 @@ impl<'s> Subject<'s> {
         (low.midpoint(high).as_vec3(), longest)
     }
 
-    /// The mesh as a whole, from the front, the right and above.
-    fn view(&self) -> View {
+    /// The mesh as a whole, from the front, the right and above, in a picture so many times as wide
+    /// as the mesh is long.
+    fn view(&self, width: f32) -> View {
         let (middle, longest) = self.middle();
-        View::from(25.0, 15.0, middle, 1.22 * longest)
+        View::from(25.0, 15.0, middle, width * longest)
     }
 }
 
@@ -187,8 +188,11 @@ impl Panels {
     /// Pixels above a panel.
     const HEAD: u32 = TITLE + 12;
 
+    /// Pixels between two panels.
+    const GAP: u32 = 8;
+
     fn canvas(&self) -> Canvas {
-        Canvas::new(self.size[0], self.size[1])
+        Canvas::new(self.size[0] - Self::GAP, self.size[1])
     }
 
     /// Puts the next one.
@@ -196,7 +200,8 @@ impl Panels {
         let (column, row) = (self.placed % self.columns, self.placed / self.columns);
         let left = column * self.size[0];
         let top = row * (self.size[1] + Self::HEAD);
-        self.sheet.place(canvas, [left, top + Self::HEAD]);
+        self.sheet
+            .place(canvas, [left + Self::GAP / 2, top + Self::HEAD]);
         let at = [left + self.size[0] / 2, top + 8];
         self.placed += 1;
         self.sheet.text(title, at, Anchor::Middle, TITLE)
@@ -206,7 +211,7 @@ impl Panels {
     fn legend(&mut self, entries: &[(Color, String)], [left, top]: [u32; 2]) -> Result<(), String> {
         let mut x = left;
         for (color, text) in entries {
-            self.sheet.rectangle([x, top + 1], [14, 14], *color);
+            self.sheet.rectangle([x, top - 2], [14, 14], *color);
             self.sheet.text(text, [x + 20, top], Anchor::Left, TEXT)?;
             // Letters are about half as wide as they are high.
             x += 48 + text.chars().count() as u32 * TEXT / 2;

@@ -8,7 +8,7 @@ use super::{Panels, Subject, grouped, shells};
 use crate::render::{Canvas, Color, Sheet, View, colors};
 
 pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
-    let view = subject.view();
+    let view = subject.view(1.2);
     let mut panels = Panels::new(3, 3, [350, 340], 0);
     let settings = subject.settings;
 

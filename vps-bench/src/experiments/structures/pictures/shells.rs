@@ -6,7 +6,7 @@ use super::{Panels, Subject, draw_mesh, grouped};
 use crate::render::{Canvas, Sheet, View, colors};
 
 pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
-    let view = subject.view();
+    let view = subject.view(1.2);
     let mesh = &subject.body.mesh;
     let mut panels = Panels::new(3, 3, [350, 340], 0);
     let mut canvas = panels.canvas();

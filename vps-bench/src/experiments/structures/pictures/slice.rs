@@ -46,7 +46,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         }
     });
     let [nx, ny, nz] = map.grid().dims();
-    let title = format!("penetration V at the voxel centres, {nx} x {ny} x {nz} voxels");
+    let title = format!("penetration V, {nx} x {ny} x {nz} voxels");
     panels.push(&title, &canvas)?;
 
     let mut canvas = panels.canvas();
@@ -66,7 +66,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
             color
         }
     });
-    panels.push("what the sparse store holds, cell by cell", &canvas)?;
+    panels.push("what is stored of each cell of 8 x 8 x 8 voxels", &canvas)?;
     let top = SIDE + Panels::HEAD + 8;
     scale.draw(&mut panels.sheet, [60, top])?;
     let entries = STORED.map(|(color, text)| (color, text.to_owned()));
@@ -83,8 +83,8 @@ enum Stored {
 }
 
 const STORED: [(Color, &str); 3] = [
-    (colors::PALE, "1 value a cell"),
-    (colors::ORANGE, "27 more"),
+    (colors::PALE, "1 value"),
+    (colors::ORANGE, "28 values"),
     (colors::VERMILION, "every voxel"),
 ];
 

@@ -11,8 +11,7 @@ const SIDE: u32 = 520;
 const GROUND: Color = Color::new(0.90, 0.88, 0.84);
 
 pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
-    let steps = &subject.settings.fall_steps;
-    let mut pose = subject.pose(steps.last().copied().unwrap_or(0))?;
+    let mut pose = subject.pose(subject.settings.traverse_step)?;
     let (tree, ground) = (&subject.coarse.tree, HalfSpace::new(Vec3::Y));
     // Deep enough for several points to be inside.
     let deepest = Query::new(tree, &ground, pose)
@@ -26,14 +25,16 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     let (_, longest) = subject.middle();
     let mut panels = Panels::new(2, 2, [SIDE, 430], 66);
     let near = Vec3::new(deepest.x, 0.012, deepest.z);
-    for (title, view) in [
+    for (title, level, view) in [
         (
-            "the whole body",
-            View::from(25.0, 0.0, middle, 1.45 * longest),
+            "spheres of all levels",
+            0,
+            View::from(25.0, 0.0, middle, 1.6 * longest),
         ),
         (
-            "the part that touches",
-            View::from(25.0, 0.0, near, 0.55 * longest),
+            "the place of contact: spheres of the leaves",
+            tree.level_count(),
+            View::from(25.0, 0.0, near, 0.42 * longest),
         ),
     ] {
         let mut canvas = panels.canvas();
@@ -45,10 +46,10 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         );
         let mesh = &subject.body.mesh;
         draw_mesh(&mut canvas, &view, mesh, pose, colors::PALE);
-        seen.draw(&mut canvas, &view, tree, pose);
+        seen.draw(&mut canvas, &view, tree, pose, level);
         panels.push(title, &canvas)?;
     }
-    let left_out = seen.spheres.iter().filter(|s| !s.1).count();
+    let left_out = seen.spheres.iter().filter(|s| !s.reaches).count();
     let descended = seen.spheres.len() - left_out;
     let inside = seen.points.iter().filter(|p| p.1).count();
     let entries = [
@@ -91,10 +92,16 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
 
 const PASSED: Color = colors::BLUE;
 
+/// A cluster whose sphere was held against the field.
+struct Tested {
+    cluster: Cluster,
+    level: u32,
+    reaches: bool,
+}
+
 /// What a traverse looked at.
 struct Traverse {
-    /// Clusters, and whether their spheres reach the ground.
-    spheres: Vec<(Cluster, bool)>,
+    spheres: Vec<Tested>,
     /// Points, and whether they are inside.
     points: Vec<(usize, bool)>,
 }
@@ -113,7 +120,11 @@ impl Traverse {
                 let cluster = tree.level(level)[index];
                 let center = pose * Vec3::from_array(cluster.center);
                 let reaches = field.penetration_bound(center, cluster.radius) >= 0.0;
-                seen.spheres.push((cluster, reaches));
+                seen.spheres.push(Tested {
+                    cluster,
+                    level,
+                    reaches,
+                });
                 if reaches {
                     below
                         .extend((cluster.first..cluster.first + cluster.count).map(|i| i as usize));
@@ -129,24 +140,31 @@ impl Traverse {
         seen
     }
 
-    fn draw(&self, canvas: &mut Canvas, view: &View, tree: &PointSphereTree<'_>, pose: Pose3) {
+    /// Spheres of a level, or of all (0), with the points in front of them.
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        view: &View,
+        tree: &PointSphereTree<'_>,
+        pose: Pose3,
+        level: u32,
+    ) {
+        let chosen = self.spheres.iter();
+        let chosen = chosen.filter(|tested| level == 0 || tested.level == level);
+        let ball = |tested: &Tested| {
+            let color = if tested.reaches { PASSED } else { colors::GREY };
+            let center = pose * Vec3::from_array(tested.cluster.center);
+            (center, tested.cluster.radius, color)
+        };
+        canvas.glass(view, chosen.map(ball).collect(), 0.03);
         for &(point, is_inside) in &self.points {
             let (color, radius) = if is_inside {
-                (colors::VERMILION, 0.0028)
+                (colors::VERMILION, 0.0030)
             } else {
                 (colors::ORANGE, 0.0022)
             };
             canvas.ball(view, pose * tree.point(point), radius, color);
         }
-        let balls = self.spheres.iter().map(|(cluster, reaches)| {
-            let color = if *reaches { PASSED } else { colors::GREY };
-            (
-                pose * Vec3::from_array(cluster.center),
-                cluster.radius,
-                color,
-            )
-        });
-        canvas.glass(view, balls.collect());
     }
 }
 
@@ -174,6 +192,6 @@ mod tests {
         let found: Vec<_> = seen.points.iter().filter(|p| p.1).map(|p| p.0).collect();
         assert_eq!(found, expected);
         assert!(!found.is_empty() && seen.points.len() < asset.tree.point_count());
-        assert!(seen.spheres.iter().any(|s| !s.1));
+        assert!(seen.spheres.iter().any(|s| !s.reaches));
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     };
     let asset = cached(subject.lab, &subject.body.mesh, &options)?;
     let map = &asset.voxelmap;
-    let view = subject.view();
+    let view = subject.view(1.42);
     let [nx, ny, nz] = map.grid().dims();
     let voxels =
         || (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
