@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::claims::Claim;
 use crate::experiments::{
-    Experiment, accuracy, bounce, drop, replay, scaling, stack, time_critical,
+    Experiment, accuracy, bounce, drop, replay, scaling, stack, structures, time_critical,
 };
 
 /// Why a TOML file cannot be used.
@@ -70,6 +70,8 @@ pub(crate) struct ExperimentFile {
     accuracy: Option<accuracy::Settings>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     scaling: Option<scaling::Settings>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    structures: Option<structures::Settings>,
     #[serde(default)]
     pub(crate) claim: Vec<Claim>,
 }
@@ -94,9 +96,10 @@ impl ExperimentFile {
 
     /// Takes another model, if it is of a kind that has one.
     pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) -> Result<(), String> {
-        match (&mut self.drop, &mut self.replay) {
-            (Some(drop), _) => drop.set_model(model, scale),
-            (_, Some(replay)) => replay.set_model(model, scale),
+        match (&mut self.drop, &mut self.replay, &mut self.structures) {
+            (Some(drop), _, _) => drop.set_model(model, scale),
+            (_, Some(replay), _) => replay.set_model(model, scale),
+            (_, _, Some(structures)) => structures.set_model(model, scale),
             _ => return Err(format!("`{}` has no model to be replaced", self.title)),
         }
         self.kind()?.check()
@@ -122,6 +125,7 @@ impl ExperimentFile {
             ("replay", kind(&self.replay)),
             ("accuracy", kind(&self.accuracy)),
             ("scaling", kind(&self.scaling)),
+            ("structures", kind(&self.structures)),
         ];
         let names = kinds.map(|(name, _)| format!("[{name}]")).join(", ");
         let mut there = kinds.into_iter().filter_map(|(_, kind)| kind);

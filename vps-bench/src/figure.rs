@@ -133,17 +133,22 @@ pub(crate) struct FigureError {
 }
 
 const SIZE: (u32, u32) = (1100, 600);
-const FONT: &str = "sans-serif";
+pub(crate) const FONT: &str = "sans-serif";
+
+/// Makes text drawable with the font that comes along.
+pub(crate) fn register_fonts() {
+    static FONT_REGISTERED: Once = Once::new();
+    FONT_REGISTERED.call_once(|| {
+        let font = epaint_default_fonts::UBUNTU_LIGHT;
+        // The font is a constant of its crate, known to be one.
+        let _ = register_font(FONT, FontStyle::Normal, font);
+    });
+}
 
 impl Figure {
     /// Writes `stem.svg` and `stem.png`.
     pub(crate) fn write(&self, folder: &Path, stem: &str) -> Result<(), FigureError> {
-        static FONT_REGISTERED: Once = Once::new();
-        FONT_REGISTERED.call_once(|| {
-            let font = epaint_default_fonts::UBUNTU_LIGHT;
-            // The font is a constant of its crate, known to be one.
-            let _ = register_font(FONT, FontStyle::Normal, font);
-        });
+        register_fonts();
         for extension in ["svg", "png"] {
             let path = folder.join(format!("{stem}.{extension}"));
             // Complete before it gets its name, so that no half figure is ever seen.

@@ -18,6 +18,7 @@ mod lab;
 mod models;
 mod page;
 mod pin;
+mod render;
 mod report;
 mod run;
 mod scratch;

@@ -110,6 +110,7 @@ pub(crate) fn run(
     progress.finish_and_clear();
     if outcome.missing == 0 {
         outcome.failures = summarize(file, choice.quick, &archive, &jobs, folder)?;
+        experiment.draw(lab, folder)?;
     }
     Ok(outcome)
 }

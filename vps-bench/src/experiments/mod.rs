@@ -9,6 +9,7 @@ mod power_law;
 pub(crate) mod replay;
 pub(crate) mod scaling;
 pub(crate) mod stack;
+pub(crate) mod structures;
 pub(crate) mod time_critical;
 mod world;
 
@@ -62,6 +63,15 @@ pub(crate) trait Experiment {
     /// Sums up the rows of all jobs (columns `case`, `algorithm`, `seed` and those of the rows) in
     /// small tables, which are kept.
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error>;
+
+    /// Draws into `folder` what needs more than the tables. It is called when all jobs are done and
+    /// their tables kept; a report shows the pictures that are there.
+    ///
+    /// # Errors
+    /// When something cannot be drawn or written.
+    fn draw(&self, _lab: &Lab, _folder: &Path) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Tables, figures (written into `folder`) and text, from the small tables alone.
     fn present(

@@ -130,6 +130,11 @@ impl Settings {
         Ok((body, ready))
     }
 
+    /// The time between two steps at the first frequency in seconds.
+    pub(super) fn step_s(&self) -> f64 {
+        1.0 / f64::from(self.frequencies_hz[0])
+    }
+
     /// The poses the first algorithm is asked about at the first frequency: one a step, the upper
     /// side of the ground being at height 0.
     pub(super) fn trace(&self, lab: &Lab, seed: u32) -> Result<Vec<Pose>, String> {

@@ -45,7 +45,7 @@ pub(super) struct StepRow {
 }
 
 impl StepRow {
-    /// That was asked about.
+    /// The pose that was asked about.
     pub(super) fn pose(&self) -> Pose {
         let rotation = Quat::from_xyzw(self.qx, self.qy, self.qz, self.qw);
         Pose::from_parts(Vector::new(self.x_m, self.y_m, self.z_m), rotation)

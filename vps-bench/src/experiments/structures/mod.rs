@@ -1,0 +1,210 @@
+//! What an asset is made of: sizes and build times of voxelmaps and pointshells, and pictures of
+//! them.
+
+mod measure;
+mod pictures;
+mod show;
+mod summary;
+
+use std::path::Path;
+
+use polars::prelude::DataFrame;
+use serde::{Deserialize, Serialize};
+use vps_build::{Clustering, Density, Encoding};
+
+use super::{Error, Experiment, Measured, drop};
+use crate::algorithms::{Algorithms, Method, Vps};
+use crate::claims::Tables;
+use crate::config::positive;
+use crate::job::Job;
+use crate::lab::Lab;
+use crate::page::Block;
+
+/// What is built, how often, and what is drawn.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    /// A name in `models.toml` or the path of a mesh.
+    model: String,
+    /// Metres a unit of the model is long.
+    scale: f64,
+    /// Algorithms of the method `vps`: a pointshell each, from coarse to fine. Voxelmaps are those
+    /// of the last.
+    shells: Vec<String>,
+    /// How often each thing is built; the middle time counts.
+    builds: u32,
+    quick_builds: u32,
+    /// Algorithms to be drawn beside the segments.
+    hull: String,
+    decomposition: String,
+    /// The level of the tree whose clusters are the segments that are drawn.
+    segments_level: u32,
+    /// Voxels along the longest side where voxels are drawn one by one.
+    drawn_voxels: u32,
+    /// The step at whose pose the traverse is drawn, and how deep the body is put into the ground
+    /// then.
+    traverse_step: u32,
+    traverse_depth_m: f32,
+    /// Steps of the fall that are drawn.
+    fall_steps: Vec<u32>,
+    /// The first job of these is what falls.
+    fall: drop::Settings,
+}
+
+/// What is in a map, and what of it is stored.
+const VOXELMAPS: [(&str, Map); 8] = [
+    (
+        "distances_sparse",
+        Map::new(Encoding::Distances(None), Density::Sparse),
+    ),
+    (
+        "distances_dense",
+        Map::new(Encoding::Distances(None), Density::Dense),
+    ),
+    ("floats_sparse", Map::new(Encoding::Floats, Density::Sparse)),
+    ("floats_dense", Map::new(Encoding::Floats, Density::Dense)),
+    ("layers_sparse", Map::new(Encoding::Layers, Density::Sparse)),
+    ("layers_dense", Map::new(Encoding::Layers, Density::Dense)),
+    ("walk_sparse", Map::by_walk(Density::Sparse)),
+    ("walk_dense", Map::by_walk(Density::Dense)),
+];
+
+/// How clusters are made; the seed of `nearest` is the number of the build.
+const SHELLS: [&str; 2] = ["halves", "nearest"];
+
+#[derive(Clone, Copy, Debug)]
+struct Map {
+    encoding: Encoding,
+    density: Density,
+    is_by_walk: bool,
+}
+
+impl Map {
+    const fn new(encoding: Encoding, density: Density) -> Self {
+        Self {
+            encoding,
+            density,
+            is_by_walk: false,
+        }
+    }
+
+    /// Whether the distance of every voxel is found among all triangles, which takes as long as all
+    /// else together.
+    fn is_slow(&self) -> bool {
+        self.density == Density::Dense && self.encoding != Encoding::Layers && !self.is_by_walk
+    }
+
+    const fn by_walk(density: Density) -> Self {
+        Self {
+            is_by_walk: true,
+            ..Self::new(Encoding::Distances(None), density)
+        }
+    }
+}
+
+fn clustering(case: &str, seed: u32) -> Option<Clustering> {
+    match case {
+        "halves" => Some(Clustering::Halves),
+        "nearest" => Some(Clustering::Nearest { seed: seed.into() }),
+        _ => None,
+    }
+}
+
+impl Settings {
+    /// Another body than the file says.
+    pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
+        self.model = model.into();
+        self.scale = scale.unwrap_or(self.scale);
+        self.fall.set_model(model, scale);
+    }
+
+    /// The algorithm with most points.
+    fn finest(&self) -> &str {
+        self.shells.last().map_or("", String::as_str)
+    }
+}
+
+/// The settings of an algorithm that must be VPS.
+fn vps<'l>(algorithms: &'l Algorithms, name: &str) -> Result<&'l Vps, String> {
+    match &algorithms.get(name)?.method {
+        Method::Vps(vps) => Ok(vps),
+        _ => Err(format!("structures.shells: `{name}` has no pointshell")),
+    }
+}
+
+impl Experiment for Settings {
+    fn check(&self) -> Result<(), String> {
+        positive("structures.scale", self.scale)?;
+        positive("structures.builds", self.builds.into())?;
+        positive("structures.quick_builds", self.quick_builds.into())?;
+        positive("structures.segments_level", self.segments_level.into())?;
+        positive("structures.drawn_voxels", self.drawn_voxels.into())?;
+        positive("structures.traverse_depth_m", self.traverse_depth_m.into())?;
+        if self.shells.is_empty() || self.fall_steps.is_empty() {
+            return Err("structures.shells and structures.fall_steps must not be empty".into());
+        }
+        self.fall.check()
+    }
+
+    fn algorithms(&self) -> Vec<&str> {
+        let drawn = [self.hull.as_str(), &self.decomposition];
+        let all = self.shells.iter().map(String::as_str).chain(drawn);
+        all.chain(self.fall.algorithms()).collect()
+    }
+
+    fn jobs(&self, quick: bool) -> Vec<Job> {
+        let builds = if quick {
+            self.quick_builds
+        } else {
+            self.builds
+        };
+        let job = |case: &str, algorithm: &str, seed| Job {
+            case: case.into(),
+            algorithm: algorithm.into(),
+            seed,
+        };
+        let mut jobs = Vec::new();
+        for seed in 0..builds {
+            for (case, map) in VOXELMAPS {
+                if !(quick && map.is_slow()) {
+                    jobs.push(job(case, self.finest(), seed));
+                }
+            }
+            for algorithm in &self.shells {
+                for case in SHELLS {
+                    jobs.push(job(case, algorithm, seed));
+                }
+            }
+        }
+        jobs
+    }
+
+    fn settings(&self) -> Result<String, Error> {
+        Ok(format!("{} x {}", self.model, self.scale))
+    }
+
+    fn identity(&self, lab: &Lab) -> Result<String, String> {
+        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    }
+
+    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+        measure::run(self, job, lab)
+    }
+
+    fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
+        summary::summarize(rows)
+    }
+
+    fn draw(&self, lab: &Lab, folder: &Path) -> Result<(), Error> {
+        Ok(pictures::draw(self, lab, folder)?)
+    }
+
+    fn present(
+        &self,
+        tables: &Tables,
+        algorithms: &Algorithms,
+        folder: &Path,
+    ) -> Result<Vec<Block>, Error> {
+        show::present(self, tables, algorithms, folder)
+    }
+}

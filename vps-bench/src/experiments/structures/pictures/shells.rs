@@ -1,0 +1,48 @@
+//! The mesh and the points on it.
+
+use vps_core::{Asset, Pose3, Vec3};
+
+use super::{Panels, Subject, draw_mesh, grouped};
+use crate::render::{Canvas, Sheet, View, colors};
+
+pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+    let view = subject.view(1.2);
+    let mesh = &subject.body.mesh;
+    let mut panels = Panels::new(3, 3, [350, 340], 0);
+    let mut canvas = panels.canvas();
+    draw_mesh(&mut canvas, &view, mesh, Pose3::IDENTITY, colors::PALE);
+    let title = format!("mesh: {} triangles", grouped(mesh.triangles().len()));
+    panels.push(&title, &canvas)?;
+    for (asset, color) in [
+        (&subject.coarse, colors::BLUE),
+        (&subject.fine, colors::VERMILION),
+    ] {
+        let mut canvas = panels.canvas();
+        draw_mesh(&mut canvas, &view, mesh, Pose3::IDENTITY, colors::PALE);
+        for i in 0..asset.tree.point_count() {
+            canvas.ball(&view, asset.tree.point(i), radius(asset), color);
+        }
+        let title = format!("pointshell: {} points", grouped(asset.tree.point_count()));
+        panels.push(&title, &canvas)?;
+    }
+    Ok(panels.sheet)
+}
+
+/// A quarter of how far apart points are.
+fn radius(asset: &Asset<'_>) -> f32 {
+    let area: f32 = asset.tree.areas().iter().sum();
+    0.25 * (area / asset.tree.point_count() as f32).sqrt()
+}
+
+/// All points of the fine shell, each in its colour.
+pub(super) fn points(
+    canvas: &mut Canvas,
+    view: &View,
+    asset: &Asset<'_>,
+    color: impl Fn(usize) -> Vec3,
+) {
+    for i in 0..asset.tree.point_count() {
+        // They touch each other.
+        canvas.ball(view, asset.tree.point(i), 2.6 * radius(asset), color(i));
+    }
+}

@@ -1,0 +1,162 @@
+//! A slice through the middle of the map, and what is stored of it.
+
+use vps_core::store::CELL;
+use vps_core::{DistanceField, Store, Vec3, Voxelmap};
+
+use super::{Panels, Subject, TEXT};
+use crate::render::{Anchor, Color, Sheet, View, colors};
+
+/// Between two lines of the same distance, in metres.
+const LINES_M: f32 = 0.02;
+
+const SIDE: u32 = 520;
+
+pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+    let map = &subject.fine.voxelmap;
+    let bounds = map.grid().bounds();
+    let middle = bounds.min.midpoint(bounds.max);
+    let extents = bounds.extents();
+    let width = 1.02 * extents.truncate().max_element();
+    let view = View::from(0.0, 0.0, middle, width);
+    let is_inside = |p: Vec3| {
+        (p - middle)
+            .abs()
+            .truncate()
+            .cmple(0.5 * extents.truncate())
+            .all()
+    };
+    let scale = Scale::of(map);
+
+    let mut panels = Panels::new(2, 2, [SIDE, SIDE], 66);
+    let mut canvas = panels.canvas();
+    let field = map.trilinear();
+    let line = 0.5 * width / SIDE as f32;
+    canvas.fill(&view, |point| {
+        if !is_inside(point) {
+            return colors::WHITE;
+        }
+        let value = field.penetration(point, Vec3::ZERO);
+        let to_line = (value / LINES_M - (value / LINES_M).round()).abs() * LINES_M;
+        if value.abs() < 1.5 * line {
+            colors::INK
+        } else if to_line < 0.5 * line {
+            scale.color(value) * 0.75
+        } else {
+            scale.color(value)
+        }
+    });
+    let [nx, ny, nz] = map.grid().dims();
+    let title = format!("penetration V, {nx} x {ny} x {nz} voxels");
+    panels.push(&title, &canvas)?;
+
+    let mut canvas = panels.canvas();
+    canvas.fill(&view, |point| {
+        if !is_inside(point) {
+            return colors::WHITE;
+        }
+        let voxel = map.grid().voxel_at(point);
+        let color = STORED[stored(map.store(), voxel) as usize].0;
+        // Where two cells meet, and where the surface is.
+        let is_edge = [0, 1].iter().any(|&axis| voxel[axis] % CELL == 0);
+        if field.penetration(point, Vec3::ZERO).abs() < 1.5 * line {
+            colors::INK
+        } else if is_edge {
+            color * 0.93
+        } else {
+            color
+        }
+    });
+    panels.push("what is stored of each cell of 8 x 8 x 8 voxels", &canvas)?;
+    let top = SIDE + Panels::HEAD + 8;
+    scale.draw(&mut panels.sheet, [60, top])?;
+    let entries = STORED.map(|(color, text)| (color, text.to_owned()));
+    panels.legend(&entries, [SIDE + 30, top + 4])?;
+    Ok(panels.sheet)
+}
+
+/// What is known of a voxel, and its colour.
+#[derive(Clone, Copy)]
+enum Stored {
+    Lattice,
+    Refined,
+    All,
+}
+
+const STORED: [(Color, &str); 3] = [
+    (colors::PALE, "1 value"),
+    (colors::ORANGE, "28 values"),
+    (colors::VERMILION, "every voxel"),
+];
+
+fn stored(store: &Store<'_>, voxel: [u32; 3]) -> Stored {
+    let (groups, cells) = store.cells();
+    if groups.is_empty() {
+        return Stored::All;
+    }
+    let [nx, ny, _] = store.dims().map(|n| n.div_ceil(CELL));
+    let [x, y, z] = voxel.map(|c| c / CELL);
+    let cell = (z * ny + y) * nx + x;
+    let (group, bit) = (&groups[cell as usize / 64], cell % 64);
+    if group.refined >> bit & 1 == 0 {
+        return Stored::Lattice;
+    }
+    let before = (group.refined & !(!0 << bit)).count_ones();
+    let [x, y, z] = voxel.map(|c| c % CELL / 2);
+    let brick = (z * 4 + y) * 4 + x;
+    if cells[(group.before + before) as usize].bricks >> brick & 1 == 1 {
+        Stored::All
+    } else {
+        Stored::Refined
+    }
+}
+
+/// Colours of penetrations: blue outside, orange inside.
+struct Scale {
+    least: f32,
+    most: f32,
+}
+
+impl Scale {
+    fn of(map: &Voxelmap<'_>) -> Self {
+        let [nx, ny, nz] = map.grid().dims();
+        let values = (0..ny).flat_map(|y| (0..nx).map(move |x| [x, y, nz / 2]));
+        let values = values.map(|voxel| map.center_penetration(voxel));
+        let (least, most) = values.fold((0.0_f32, 0.0_f32), |(least, most), v| {
+            (least.min(v), most.max(v))
+        });
+        Self {
+            least: (least / LINES_M).floor() * LINES_M,
+            most: (most / LINES_M).ceil() * LINES_M,
+        }
+    }
+
+    fn color(&self, value: f32) -> Color {
+        if value < 0.0 {
+            Color::new(0.93, 0.96, 0.98).lerp(colors::BLUE, (value / self.least).min(1.0))
+        } else {
+            Color::new(0.99, 0.93, 0.80).lerp(colors::VERMILION, (value / self.most).min(1.0))
+        }
+    }
+
+    /// Two bars, one a side: inside distances are much smaller than outside.
+    fn draw(&self, sheet: &mut Sheet, [left, top]: [u32; 2]) -> Result<(), String> {
+        let (length, gap) = (180, 20);
+        for (x, from, to) in [
+            (left, self.least, 0.0),
+            (left + length + gap, 0.0, self.most),
+        ] {
+            for i in 0..length {
+                let value = from + (to - from) * (i as f32 + 0.5) / length as f32;
+                sheet.rectangle([x + i, top], [1, 18], self.color(value));
+            }
+            for i in 0..=2 {
+                let value = from + (to - from) * i as f32 / 2.0;
+                let text = format!("{:.0}", 1e3 * value).replace('-', "−");
+                let at = [x + length * i / 2, top + 24];
+                sheet.text(&text, at, Anchor::Middle, TEXT)?;
+            }
+        }
+        let unit = [left + 2 * length + gap + 28, top + 24];
+        sheet.text("mm", unit, Anchor::Left, TEXT)
+    }
+}

@@ -1,0 +1,173 @@
+//! What tables of builds show, and the pictures.
+
+use std::path::Path;
+
+use super::pictures::PICTURES;
+use super::{SHELLS, Settings};
+use crate::algorithms::Algorithms;
+use crate::claims::Tables;
+use crate::experiments::Error;
+use crate::frame::{Row, rows};
+use crate::page::{Block, FigureLink, Table, fixed, short};
+
+pub(super) fn present(
+    settings: &Settings,
+    tables: &Tables,
+    algorithms: &Algorithms,
+    folder: &Path,
+) -> Result<Vec<Block>, Error> {
+    let table = |name: &str| tables.get(name).ok_or_else(|| format!("no table `{name}`"));
+    let mut blocks = vec![Block::Table(voxelmaps(rows(table("voxelmaps")?)))];
+    let shells = rows(table("pointshells")?);
+    blocks.push(Block::Table(pointshells(shells, algorithms)?));
+    let levels: Vec<_> = rows(table("levels")?).collect();
+    blocks.push(Block::Table(clusters(settings, &levels, algorithms)?));
+    let mut missing = Vec::new();
+    for picture in &PICTURES {
+        let file = format!("{}.png", picture.stem);
+        if folder.join(&file).exists() {
+            let caption = picture.caption.into();
+            blocks.push(Block::Figure(FigureLink { file, caption }));
+        } else {
+            missing.push(file);
+        }
+    }
+    if !missing.is_empty() {
+        let missing = missing.join(", ");
+        let text = format!("Not there: {missing}. Running the experiment draws them.");
+        blocks.push(Block::Text(text));
+    }
+    Ok(blocks)
+}
+
+fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
+    let mut table = Table::new(
+        "Voxelmaps by what a voxel holds and which voxels are stored",
+        &[
+            "holds",
+            "stored",
+            "voxels",
+            "values stored",
+            "size, MB",
+            "surface and inside, s",
+            "distances, s",
+            "error bound, mm: near / elsewhere",
+        ],
+    );
+    for row in rows {
+        let case = row.text("case");
+        let (holds, stored) = case.split_once('_').unwrap_or((&case, ""));
+        let holds = match holds {
+            "distances" => "distances, 16 bits",
+            "floats" => "distances, 32-bit floats",
+            "layers" => "layers, 16 bits",
+            "walk" => "distances by gradient walk, 16 bits",
+            other => other,
+        };
+        let number = |column: &str| row.number(column);
+        let sides = ["voxels_x", "voxels_y", "voxels_z"].map(|side| fixed(number(side), 0));
+        table.push([
+            holds.into(),
+            stored.into(),
+            sides.join(" x "),
+            fixed(number("values"), 0),
+            short(number("map_mb")),
+            short(number("voxels_s")),
+            short(number("distances_s")),
+            format!(
+                "{} / {}",
+                short(number("near_error_mm")),
+                short(number("far_error_mm"))
+            ),
+        ]);
+    }
+    table
+}
+
+/// What a clustering is called.
+fn clustering(case: &str) -> &str {
+    match case {
+        "halves" => "halves, from the top",
+        "nearest" => "nearest K, from the leaves (section 2.1.2)",
+        other => other,
+    }
+}
+
+fn pointshells<'f>(
+    rows: impl Iterator<Item = Row<'f>>,
+    algorithms: &Algorithms,
+) -> Result<Table, Error> {
+    let mut table = Table::new(
+        "Pointshells by how points are put into clusters",
+        &[
+            "shell",
+            "clusters",
+            "points",
+            "levels",
+            "size, MB",
+            "points, s",
+            "tree, s",
+            "whole asset, s",
+            "whole file, MB",
+        ],
+    );
+    for row in rows {
+        let number = |column: &str| row.number(column);
+        table.push([
+            algorithms.get(&row.text("algorithm"))?.label.clone(),
+            clustering(&row.text("case")).into(),
+            fixed(number("points"), 0),
+            fixed(number("levels"), 0),
+            short(number("tree_mb")),
+            short(number("points_s")),
+            short(number("tree_s")),
+            short(number("asset_build_s")),
+            short(number("file_mb")),
+        ]);
+    }
+    Ok(table)
+}
+
+/// A row a shell, a column a level.
+fn clusters(
+    settings: &Settings,
+    levels: &[Row<'_>],
+    algorithms: &Algorithms,
+) -> Result<Table, Error> {
+    let numbers = levels.iter().filter_map(|row| row.number("level"));
+    let deepest = numbers.fold(0.0, f64::max) as u32;
+    let heads: Vec<_> = (1..=deepest).map(|level| format!("L = {level}")).collect();
+    let mut head = vec!["shell", "clusters"];
+    head.extend(heads.iter().map(String::as_str));
+    let mut table = Table::new(
+        "Clusters of each level, their children on average, mean radius of their spheres in mm",
+        &head,
+    );
+    for name in &settings.shells {
+        for case in SHELLS {
+            let cell = |level: u32| {
+                let row = levels.iter().find(|row| {
+                    row.text("algorithm") == *name
+                        && row.text("case") == case
+                        && row.number("level") == Some(level.into())
+                });
+                row.map_or_else(String::new, |row| {
+                    format!(
+                        "{}; {}; {}",
+                        fixed(row.number("clusters"), 0),
+                        fixed(row.number("children_mean"), 1),
+                        short(row.number("radius_mm_mean"))
+                    )
+                })
+            };
+            let cells: Vec<_> = (1..=deepest).map(cell).collect();
+            let label = algorithms.get(name)?.label.clone();
+            table.push(
+                [label, clustering(case).to_owned()]
+                    .into_iter()
+                    .chain(cells),
+            );
+        }
+    }
+    Ok(table)
+}
