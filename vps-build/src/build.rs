@@ -394,14 +394,14 @@ fn voxelmap(
     let lattice = source.lattice(&grid);
     let largest = lattice.largest(size);
     let coding = match options.encoding {
-        Encoding::Layers => Coding::Integers(size),
+        Encoding::Layers => Coding::Layers(size),
         Encoding::Distances(precision) => Coding::Integers(lambda(precision, largest)?),
         Encoding::Floats => Coding::Floats,
     };
     // One truncated step, and the rounding of 32-bit coordinates.
     let rounding = 8.0 * f64::from(f32::EPSILON * bounds.extents().length());
     let stored = match coding {
-        Coding::Integers(lambda) => lambda + rounding,
+        Coding::Integers(lambda) | Coding::Layers(lambda) => lambda + rounding,
         Coding::Floats => rounding,
     };
     let interpolated = if is_dense {

@@ -22,6 +22,8 @@ pub(crate) enum Source<'a> {
 pub(crate) enum Coding {
     /// Integers of so many metres each, truncated towards zero (eq. 1).
     Integers(f64),
+    /// Layers of so many metres each, rounded: they are whole but for the rounding of metres.
+    Layers(f64),
     Floats,
 }
 
@@ -30,6 +32,7 @@ impl Coding {
     fn value(self, penetration: f64) -> f32 {
         match self {
             Self::Integers(sigma) => (penetration / sigma) as i16 as f32,
+            Self::Layers(size) => (penetration / size).round() as i16 as f32,
             Self::Floats => penetration as f32,
         }
     }
@@ -37,14 +40,14 @@ impl Coding {
     /// What a value is worth in metres.
     pub(crate) fn sigma(self) -> f64 {
         match self {
-            Self::Integers(sigma) => sigma,
+            Self::Integers(sigma) | Self::Layers(sigma) => sigma,
             Self::Floats => 1.0,
         }
     }
 
     pub(crate) fn values(self, values: Vec<f32>) -> Values<'static> {
         match self {
-            Self::Integers(_) => {
+            Self::Integers(_) | Self::Layers(_) => {
                 Values::Integers(values.iter().map(|&v| v as i16).collect::<Vec<_>>().into())
             }
             Self::Floats => Values::Floats(values.into()),

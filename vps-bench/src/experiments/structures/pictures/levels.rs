@@ -22,7 +22,7 @@ pub(super) fn points(subject: &Subject<'_>) -> Result<Sheet, String> {
 }
 
 pub(super) fn spheres(subject: &Subject<'_>) -> Result<Sheet, String> {
-    panels(subject, "spheres", 1.75, |canvas, view, clusters, color| {
+    panels(subject, "spheres", 1.6, |canvas, view, clusters, color| {
         let ball = |c: &Cluster| (Vec3::from_array(c.center), c.radius, color);
         canvas.glass(view, clusters.iter().map(ball).collect(), 0.16);
     })

@@ -36,8 +36,8 @@ pub(super) const PICTURES: [Picture; 8] = [
     },
     Picture {
         stem: "voxels",
-        caption: "Layers of a coarse voxelmap. Left: the surface voxels, layer 0. Right: the front \
-                  half taken away; layer 0 is the outermost, every ring further inside is one more",
+        caption: "Layers of a voxelmap with larger voxels than in the experiments (Fig. 1). Left: the \
+                  surface voxels, layer 0. Right: the front half taken away, with the inner layers",
         draw: voxels::draw,
     },
     Picture {

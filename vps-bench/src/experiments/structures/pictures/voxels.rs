@@ -66,6 +66,9 @@ fn layer(map: &Voxelmap<'_>, voxel: [u32; 3]) -> i32 {
     map.store().value(voxel).round() as i32
 }
 
+/// How light the sides of voxels are, by axis: those of the cut have the colours of the legend.
+const SHADES: [f32; 3] = [0.7, 0.88, 1.0];
+
 /// Those sides of a voxel that no other one hides, a little smaller so that voxels can be told
 /// apart.
 fn cube(
@@ -101,12 +104,48 @@ fn cube(
                     middle + a - b,
                 ]
             };
+            let color = color * SHADES[axis];
             for ([p, q, r, s], color) in [
                 (square(1.0, 1.0), color * 0.55),
                 (square(0.86, 1.02), color),
             ] {
-                canvas.triangle(view, [p, q, r], color);
-                canvas.triangle(view, [p, r, s], color);
+                canvas.unlit_triangle(view, [p, q, r], color);
+                canvas.unlit_triangle(view, [p, r, s], color);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use vps_build::{Mesh, build};
+
+    use super::*;
+
+    /// Each layer is drawn as what it is: one voxel further inside, one layer more.
+    #[test]
+    fn no_layer_is_missing() {
+        let mesh = Mesh::cuboid([0.21; 3]).unwrap();
+        for density in [Density::Dense, Density::Sparse] {
+            // A size that 32 bits round down or up, depending on the layer.
+            let options = BuildOptions {
+                resolution: Resolution::VoxelsAlongLongest(41),
+                margin: 2,
+                points: PointCount::About(1),
+                encoding: Encoding::Layers,
+                density,
+                ..BuildOptions::default()
+            };
+            let asset = build(&mesh, &options, &|_| ()).unwrap().asset;
+            let [nx, ny, nz] = asset.voxelmap.grid().dims();
+            let row = (0..nx).map(|x| layer(&asset.voxelmap, [x, ny / 2, nz / 2]));
+            let row: Vec<_> = row.collect();
+            // Once on the way in and once on the way out.
+            let deepest = row.iter().copied().max().unwrap();
+            assert!(deepest >= 19, "{row:?}");
+            for inner in 1..=deepest {
+                let count = row.iter().filter(|v| **v == inner).count();
+                assert!((1..=2).contains(&count), "layer {inner}: {row:?}");
             }
         }
     }
