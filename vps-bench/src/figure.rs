@@ -168,7 +168,7 @@ impl Figure {
             .caption(&self.title, (FONT, 24))
             .margin(12)
             .x_label_area_size(48)
-            .y_label_area_size(84)
+            .y_label_area_size(112)
             .build_cartesian_2d(self.x.drawn(), self.y.drawn())
             .map_err(error)?;
         chart
