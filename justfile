@@ -24,8 +24,8 @@ reproduce-paper: build
 reproduce-smoke: build
     {{ bench }} reproduce --quick --out target/smoke
 
-# Fail if the README or the report are not those of the tables in reports; writes nothing
-reports-check:
+# Fail if tables in the README or report.md are not those of the tables in reports; writes nothing
+readme-check:
     {{ bench }} report --splice README.md --check
 
 # Open a report in headless Chromium and fail if something in it does not show

@@ -175,7 +175,7 @@ impl Figure {
             // The last value of an axis is written around its end.
             .margin_right(36)
             .x_label_area_size(48)
-            .y_label_area_size(84)
+            .y_label_area_size(112)
             .build_cartesian_2d(self.x.drawn(), self.y.drawn())
             .map_err(error)?;
         chart

@@ -1,7 +1,7 @@
 //! Runs the jobs of an experiment and keeps what they leave behind.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use polars::prelude::DataFrame;
@@ -73,7 +73,7 @@ pub(crate) fn run(
     let progress = ProgressBar::new(jobs.len() as u64);
     let style = "{bar:30} {pos}/{len} jobs, {elapsed} of about {duration}  {msg}";
     progress.set_style(ProgressStyle::with_template(style)?);
-    progress.enable_steady_tick(Duration::from_millis(200));
+    // Drawn between jobs only: a thread that draws would be on the core of what is timed.
     for (number, job) in jobs.iter().enumerate() {
         progress.inc(1);
         let id = format!("{name}/{}", job.id());

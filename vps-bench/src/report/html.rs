@@ -67,13 +67,19 @@ pub(super) fn report(sections: &[Section], folder: &Path) -> Result<String, Erro
 fn count(verdicts: &[&Verdict]) -> String {
     let of = |outcome| verdicts.iter().filter(|v| v.outcome == outcome).count();
     let otherwise = verdicts.iter().filter(|v| !v.is_as_expected()).count();
-    let outcomes = [Outcome::Holds, Outcome::DoesNotHold, Outcome::NotComparable];
-    let counted = outcomes.map(|outcome| format!("{} {}", of(outcome), outcome.text()));
-    let counted = format!("Of {} claims: {}", verdicts.len(), counted.join(", "));
-    match otherwise {
-        0 => format!("{counted}. All as expected."),
-        n => format!("{counted}. {n} otherwise than expected."),
-    }
+    let [holds, fails, unknown] = [
+        of(Outcome::Holds),
+        of(Outcome::DoesNotHold),
+        of(Outcome::NotComparable),
+    ];
+    let expected = match otherwise {
+        0 => "All as expected.".into(),
+        n => format!("Otherwise than expected: {n}."),
+    };
+    let all = verdicts.len();
+    format!(
+        "Claims: {all}. Hold: {holds}. Do not hold: {fails}. Not comparable: {unknown}. {expected}"
+    )
 }
 
 fn section(section: &Section, folder: &Path) -> Result<Markup, Error> {

@@ -32,7 +32,11 @@ fn what_is_wrong_is_said_in_one_line() {
         "algorithm = \"none\"",
         &["`none` is none of"],
     );
-    wrong("[drop]", "[fly]", &["wrong.toml:8: ", "`fly`"]);
+    wrong(
+        "[[claim]]",
+        "[fly]\n[[claim]]",
+        &["wrong.toml:32: ", "`fly`"],
+    );
     wrong(
         "at_most = 0\n",
         "",
@@ -43,6 +47,13 @@ fn what_is_wrong_is_said_in_one_line() {
         "expect = \"true\"",
         &["wrong.toml:", "`true`"],
     );
+    let words = "order = 1\ntitle = \"\"\npaper = \"\"\nquestion = \"\"\nmisleads = \"\"\n";
+    project.write("experiments/wrong.toml", words);
+    let expected = [
+        "wrong.toml: exactly one table of these is needed: ",
+        "[drop]",
+    ];
+    project.fails(2, &["run", "wrong"], &expected);
     assert!(!project.path("reports").exists());
 }
 
