@@ -167,6 +167,8 @@ impl Figure {
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, (FONT, 24))
             .margin(12)
+            // Half of the last label.
+            .margin_right(44)
             .x_label_area_size(48)
             .y_label_area_size(84)
             .build_cartesian_2d(self.x.drawn(), self.y.drawn())
