@@ -114,17 +114,6 @@ pub(crate) fn decades(curves: &[Curve], others: &[f64], least: f64) -> Range<f64
     10_f64.powf(low)..10_f64.powf(high.max(low + 1.0))
 }
 
-/// Nice bounds around all values, from zero if none is below it.
-pub(crate) fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (low, high) = values
-        .filter(|v| v.is_finite())
-        .fold((0.0, 0.0), |(low, high): (f64, f64), v| {
-            (low.min(v), high.max(v))
-        });
-    let step = 10_f64.powf((high - low).max(1e-9).log10().floor()) / 2.0;
-    (low / step).floor() * step..((high / step).ceil() * step).max(low + step)
-}
-
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {what}", path.display())]
 pub(crate) struct FigureError {
@@ -173,7 +162,7 @@ impl Figure {
             .caption(&self.title, (FONT, 24))
             .margin(12)
             // The last value of an axis is written around its end.
-            .margin_right(36)
+            .margin_right(44)
             .x_label_area_size(48)
             .y_label_area_size(112)
             .build_cartesian_2d(self.x.drawn(), self.y.drawn())

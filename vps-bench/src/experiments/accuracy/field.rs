@@ -39,6 +39,7 @@ impl Settings {
             let options = BuildOptions {
                 resolution: Resolution::VoxelSize(size),
                 encoding: method.encoding(),
+                density: method.density(),
                 // It is never the shell.
                 points: PointCount::About(100),
                 ..BuildOptions::default()
@@ -62,7 +63,8 @@ impl Settings {
             // What a 32-bit number can hold.
             let point = self.point_near(shape, &mut rng).as_vec3();
             let inward = shape.inward(point.as_dvec3());
-            let reported = field.penetration(point, inward.as_vec3());
+            // The inward normal of a shell that touches here: it looks the other way.
+            let reported = field.penetration(point, -inward.as_vec3());
             let direction = field.inward_direction(point).as_dvec3();
             let exact = shape.penetration(point.as_dvec3());
             rows.push(AccuracyRow {

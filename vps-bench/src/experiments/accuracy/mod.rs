@@ -16,7 +16,7 @@ use polars::prelude::DataFrame;
 use rand::{Rng, RngExt};
 use rapier3d::glamx::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
-use vps_build::Encoding;
+use vps_build::{Density, Encoding};
 use vps_core::{DistanceField, Voxelmap, Wrench};
 
 use self::shape::Shape;
@@ -58,7 +58,8 @@ enum Method {
     Linear,
     /// Interpolated, on 32-bit distances.
     Trilinear,
-    /// Interpolated, on distances truncated to 16 bits (eq. 1), which is the default.
+    /// Interpolated, on distances truncated to 16 bits (eq. 1) in a sparse map: the default. All
+    /// others are dense.
     #[serde(rename = "trilinear_16_bit")]
     Trilinear16Bit,
     /// Interpolated, on numbers of layers.
@@ -107,7 +108,7 @@ impl Method {
             Self::Local => "eq. 4, local",
             Self::Linear => "eq. 5, linear",
             Self::Trilinear => "trilinear",
-            Self::Trilinear16Bit => "trilinear, 16 bits",
+            Self::Trilinear16Bit => "trilinear, 16 bits, sparse",
             Self::Layers => "trilinear, layers",
         }
     }
@@ -117,6 +118,13 @@ impl Method {
             Self::Local | Self::Linear | Self::Trilinear => Encoding::Floats,
             Self::Trilinear16Bit => Encoding::Distances(None),
             Self::Layers => Encoding::Layers,
+        }
+    }
+
+    fn density(self) -> Density {
+        match self {
+            Self::Trilinear16Bit => Density::Sparse,
+            _ => Density::Dense,
         }
     }
 
