@@ -62,7 +62,7 @@ fn what_is_not_the_same_is_not_compared() {
     let algorithms = "experiments/algorithms.toml";
     let project = Project::new("compare-other");
     run_both(&project, || {
-        project.edit(fall, fall, "friction = 0.5", "friction = 0.4")
+        project.edit(fall, fall, "friction = 0.5", "friction = 0.4");
     });
     let expected = [
         "fall cannot be compared: drop.friction is 0.5 in A and 0.4",
@@ -71,7 +71,7 @@ fn what_is_not_the_same_is_not_compared() {
     project.fails(2, &["compare", "a", "b"], &expected);
 
     run_both(&project, || {
-        project.edit(algorithms, algorithms, "points = 800", "points = 700")
+        project.edit(algorithms, algorithms, "points = 800", "points = 700");
     });
     let expected = ["200hz.vps is not the same in A and B: its model, its algorithm's parameters"];
     project.fails(2, &["compare", "a", "b"], &expected);
