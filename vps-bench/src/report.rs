@@ -144,6 +144,9 @@ pub(crate) fn write(
         let results = Results::read(name, &records.join(name))?;
         let folder = out.join(name);
         std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        if records != out {
+            copy_pictures(&records.join(name), &folder)?;
+        }
         sections.push(results.section(file, algorithms, &folder)?);
     }
     write_atomically(&out.join(MARKDOWN), markdown::report(&sections).as_bytes())?;
@@ -157,6 +160,19 @@ pub(crate) fn write(
         (section.name.clone(), table.unwrap_or_default())
     };
     Ok(sections.iter().map(first_table).collect())
+}
+
+/// Brings what a run drew, and a report only shows, to another folder.
+fn copy_pictures(from: &Path, to: &Path) -> Result<(), Error> {
+    for entry in std::fs::read_dir(from)? {
+        let path = entry?.path();
+        if let Some(name) = path.file_name()
+            && path.extension().is_some_and(|e| e == "png")
+        {
+            std::fs::copy(&path, to.join(name))?;
+        }
+    }
+    Ok(())
 }
 
 /// Replaces what stands between the marks of each table in a text that has marks of some of them.
