@@ -203,8 +203,11 @@ pub(crate) fn are_opposed(contacts: &[PairContact]) -> bool {
 }
 
 /// Turns all contacts to one normal out of the first shape, and leaves out those that push against
-/// it.
+/// it; unless all do.
 pub(crate) fn turn_all(contacts: &mut Vec<PairContact>, normal: Vec3, pos12: &Pose3) {
+    if contacts.iter().all(|c| c.normals[0].dot(normal) <= 0.0) {
+        return;
+    }
     contacts.retain(|c| c.normals[0].dot(normal) > 0.0);
     for contact in contacts {
         contact.turn(normal, pos12);

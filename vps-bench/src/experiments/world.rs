@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rapier3d::prelude::*;
 use vps_compare::Dispatcher;
 
-use crate::timed::{Stopwatch, Timed};
+use crate::timed::{Queries, Stopwatch, Timed};
 
 /// How a world steps.
 #[derive(Clone, Copy, Debug)]
@@ -50,15 +50,16 @@ impl World {
             .insert(RigidBodyBuilder::fixed().translation(below), ground);
     }
 
-    /// Steps once.
+    /// Steps once; gives what its queries took.
     ///
     /// # Errors
     /// When the engine could not ask the algorithm: it would go on without contacts.
-    pub(super) fn step(&mut self) -> Result<(), String> {
+    pub(super) fn step(&mut self) -> Result<Queries, String> {
         self.physics.step();
-        if self.stopwatch.take().unsupported > 0 {
+        let queries = self.stopwatch.take();
+        if queries.unsupported > 0 {
             return Err("the dispatcher does not support this pair of shapes".into());
         }
-        Ok(())
+        Ok(queries)
     }
 }

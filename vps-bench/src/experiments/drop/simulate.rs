@@ -1,17 +1,14 @@
 //! A body falls on the ground: one simulation.
 
-use std::sync::Arc;
-
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rapier3d::prelude::*;
 use serde::Serialize;
 use vps_compare::{Prepared, summary};
 use vps_core::Quat;
 
 use super::Settings;
+use crate::experiments::orientation::random_orientation;
+use crate::experiments::world::{Stepping, World};
 use crate::lab::Body;
-use crate::timed::{Stopwatch, Timed};
 
 /// One step of one simulation.
 #[derive(Clone, Debug, Serialize)]
@@ -64,18 +61,14 @@ impl Settings {
         frequency: u32,
         orientation: u32,
     ) -> Result<Vec<StepRow>, String> {
-        let stopwatch = Arc::new(Stopwatch::default());
-        let (mut world, body) = self.world(falling, prepared, &stopwatch, frequency, orientation);
+        let (mut world, body) = self.world(falling, prepared, frequency, orientation);
         let steps = self.steps(frequency);
         let mut rows = Vec::with_capacity(steps as usize);
         for step in 0..steps {
-            let asked = *world.bodies[body].position();
-            let spin = world.bodies[body].angvel();
-            world.step();
-            let queries = stopwatch.take();
-            if queries.unsupported > 0 {
-                return Err("the dispatcher does not support this pair of shapes".into());
-            }
+            let asked = *world.physics.bodies[body].position();
+            let spin = world.physics.bodies[body].angvel();
+            let queries = world.step()?;
+            let world = &world.physics;
             let pairs = world.narrow_phase.contact_pairs();
             let manifolds = pairs.flat_map(|pair| pair.solver_manifolds().iter());
             let (contacts, penetration_m) = summary(manifolds);
@@ -113,33 +106,22 @@ impl Settings {
         &self,
         falling: &Body,
         prepared: &Prepared,
-        stopwatch: &Arc<Stopwatch>,
         frequency: u32,
         orientation: u32,
-    ) -> (PhysicsWorld, RigidBodyHandle) {
-        let timed = Timed::new(prepared.dispatcher.clone(), stopwatch.clone());
-        let mut world = PhysicsWorld {
-            narrow_phase: NarrowPhase::with_query_dispatcher(timed),
-            gravity: Vector::new(0.0, -self.gravity_m_s2, 0.0),
-            ..PhysicsWorld::default()
+    ) -> (World, RigidBodyHandle) {
+        let stepping = Stepping {
+            gravity_m_s2: self.gravity_m_s2.into(),
+            frequency_hz: frequency,
+            prediction_m: self.prediction_m.into(),
         };
-        let parameters = &mut world.integration_parameters;
-        parameters.dt = 1.0 / frequency as f32;
-        parameters.contact_recycling = false;
-        parameters.contact_clustering = false;
-        parameters.normalized_prediction_distance = self.prediction_m / parameters.length_unit;
-
-        let below = Vector::new(0.0, -0.5 * self.ground_extents_m[1] as f32, 0.0);
+        let mut world = stepping.world(&prepared.dispatcher);
         let material = |shape: &SharedShape| {
             ColliderBuilder::new(shape.clone())
                 .friction(self.friction)
                 .restitution(self.restitution)
         };
-        world.insert(
-            RigidBodyBuilder::fixed().translation(below),
-            material(&prepared.ground),
-        );
-        let rotation = self.start_orientation(orientation);
+        world.insert_ground(material(&prepared.ground), self.ground_extents_m);
+        let rotation = random_orientation(self.seed, orientation);
         let center = falling.mass.center();
         let start = Vector::new(0.0, self.drop_height_m, 0.0) - rotation * center;
         let inertia = falling.mass.inertia_tensor(self.mass_kg);
@@ -149,17 +131,9 @@ impl Settings {
             .additional_mass_properties(mass)
             .can_sleep(false);
         // All mass is that of the solid, whatever an algorithm made of it.
-        let (handle, _) = world.insert(builder, material(&prepared.body).density(0.0));
+        let (handle, _) = world
+            .physics
+            .insert(builder, material(&prepared.body).density(0.0));
         (world, handle)
-    }
-
-    /// Uniformly distributed (Shoemake, 1992); the same for all algorithms.
-    fn start_orientation(&self, orientation: u32) -> Quat {
-        let seed = self.seed.wrapping_add(u64::from(orientation));
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let [u, v, w]: [f32; 3] = rng.random();
-        let (v, w) = (v * std::f32::consts::TAU, w * std::f32::consts::TAU);
-        let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
-        Quat::from_xyzw(a * v.sin(), a * v.cos(), b * w.sin(), b * w.cos()).normalize()
     }
 }

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rapier3d::prelude::*;
 use vps_compare::{Ground, Prepared, Scene, summary};
 
-use super::queries::random_rotation;
 use super::{Settings, TimeRow};
+use crate::experiments::orientation::orientation_of;
 use crate::lab::{Body, Lab};
 use crate::timed::{Stopwatch, Timed};
 
@@ -88,7 +88,7 @@ impl Settings {
         let inertia = body.mass.inertia_tensor(settings.mass_kg);
         let mass = MassProperties::with_inertia_matrix(center, settings.mass_kg, inertia);
         for i in 0..count {
-            let turned = Pose::from_parts(Vector::ZERO, random_rotation(&mut rng));
+            let turned = Pose::from_parts(Vector::ZERO, orientation_of(rng.random()));
             let height = body.oracle.penetration(&turned, 0.0) + self.fixed_depth_m;
             let place = |i: u32| (i as f32 + 0.5) * settings.spacing_m - 0.5 * width;
             let start = Vector::new(place(i % side), height, place(i / side));

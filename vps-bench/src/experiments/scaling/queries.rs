@@ -10,9 +10,10 @@ use rapier3d::math::{Pose, Vector};
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, models};
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{CollisionAlgorithm, Contacts, Ground, Scene, Trimesh};
-use vps_core::{Asset, Quat, Query, Trilinear, Vec3, Weight};
+use vps_core::{Asset, Query, Trilinear, Vec3, Weight};
 
 use super::{Ask, Case, Settings, TimeRow};
+use crate::experiments::orientation::orientation_of;
 use crate::lab::Lab;
 
 /// How large the torus is that has more and more triangles, and the one that is pressed into a
@@ -103,7 +104,7 @@ impl Settings {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let top = 0.5 * self.ground_extents_m[1] as f32;
         let pose = |_| {
-            let turned = Pose::from_parts(Vector::ZERO, random_rotation(&mut rng));
+            let turned = Pose::from_parts(Vector::ZERO, orientation_of(rng.random()));
             // How far it is below the upper side now.
             let below = oracle.penetration(&turned, top);
             Pose::from_parts(Vector::Y * (below - depth), turned.rotation)
@@ -117,7 +118,7 @@ impl Settings {
         let pose = |_| {
             let corner = rng.random_range(0..mesh.vertices().len());
             // The middle of the rod, not that of the hole, is at the corner.
-            let rotation = random_rotation(&mut rng);
+            let rotation = orientation_of(rng.random());
             let aside = rotation * (Vector::X * (0.35 * PROBE_M as f32));
             Pose::from_parts(mesh.vertices()[corner].as_vec3() + aside, rotation)
         };
@@ -216,14 +217,6 @@ impl Ask {
             Self::Trimesh => {}
         }
     }
-}
-
-/// Uniformly distributed (Shoemake, 1992).
-pub(super) fn random_rotation(rng: &mut ChaCha8Rng) -> Quat {
-    let [u, v, w]: [f32; 3] = rng.random();
-    let (v, w) = (v * std::f32::consts::TAU, w * std::f32::consts::TAU);
-    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
-    Quat::from_xyzw(a * v.sin(), a * v.cos(), b * w.sin(), b * w.cos()).normalize()
 }
 
 #[cfg(test)]
