@@ -66,11 +66,10 @@ fn a_filter_runs_what_it_names() {
 }
 
 #[test]
-fn a_broken_record_is_named() {
+fn a_job_with_a_broken_record_is_run_again() {
     let project = Project::new("broken");
     project.succeeds(&["run", "fall", "--quick"]);
-    let record = "reports/fall/raw/200hz.hull.0.json";
-    project.write(record, "{ \"job\": ");
-    let expected = ["200hz.hull.0.json: ", "remove it to run the job again"];
-    project.fails(2, &["run", "fall", "--quick"], &expected);
+    project.write("reports/fall/raw/200hz.hull.0.json", "{ \"job\": ");
+    let said = project.succeeds(&["run", "fall", "--quick"]);
+    assert!(said.contains("1 jobs run, 3 kept"), "{said}");
 }
