@@ -64,6 +64,11 @@ pub(crate) struct Verdict {
 /// Tables of an experiment by name.
 pub(crate) type Tables = BTreeMap<String, DataFrame>;
 
+/// A table that must be there.
+pub(crate) fn table<'t>(tables: &'t Tables, name: &str) -> Result<&'t DataFrame, String> {
+    tables.get(name).ok_or_else(|| format!("no table `{name}`"))
+}
+
 impl Outcome {
     /// In words.
     pub(crate) fn text(self) -> &'static str {

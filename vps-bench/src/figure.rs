@@ -8,6 +8,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
 
+use crate::page::grouped;
+
 /// A curve.
 pub(crate) struct Curve {
     pub(crate) label: String,
@@ -231,15 +233,7 @@ fn plain(y: f64) -> String {
     if decimals > 0 {
         return format!("{y:.decimals$}");
     }
-    let digits = format!("{y:.0}");
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
+    grouped(&format!("{y:.0}"))
 }
 
 #[cfg(test)]

@@ -149,6 +149,15 @@ pub(crate) fn rows(frame: &DataFrame) -> impl Iterator<Item = Row<'_>> {
     (0..frame.height()).map(|index| Row { frame, index })
 }
 
+/// The rows of a case and an algorithm.
+pub(crate) fn rows_of<'f>(
+    frame: &'f DataFrame,
+    case: &str,
+    algorithm: &str,
+) -> impl Iterator<Item = Row<'f>> {
+    rows(frame).filter(move |r| r.text("case") == case && r.text("algorithm") == algorithm)
+}
+
 /// A row of a table.
 #[derive(Clone, Copy)]
 pub(crate) struct Row<'f> {

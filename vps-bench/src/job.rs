@@ -12,6 +12,19 @@ pub(crate) struct Job {
 }
 
 impl Job {
+    /// One for each of some algorithms.
+    pub(crate) fn of_each<'a>(
+        algorithms: impl IntoIterator<Item = &'a String>,
+        case: String,
+        seed: u32,
+    ) -> impl Iterator<Item = Self> {
+        algorithms.into_iter().map(move |algorithm| Self {
+            case: case.clone(),
+            algorithm: algorithm.clone(),
+            seed,
+        })
+    }
+
     /// What the job is called in its experiment.
     pub(crate) fn id(&self) -> String {
         format!("{}.{}.{}", self.case, self.algorithm, self.seed)

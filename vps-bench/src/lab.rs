@@ -1,5 +1,6 @@
 //! What jobs need: models, assets and algorithms made ready, each once.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -11,8 +12,8 @@ use vps_build::{
 };
 use vps_compare::oracle::PlaneOracle;
 use vps_compare::{
-    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
-    Voxels, Vps, VpsGround,
+    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Ground, Prepared, Scene,
+    Trimesh, Voxels, Vps, VpsGround,
 };
 use vps_core::MassProperties;
 use vps_rapier::{Manifolds, Sampling};
@@ -42,8 +43,15 @@ pub(crate) struct Body {
 
 /// An algorithm on a body and a ground.
 pub(crate) struct Ready {
-    pub(crate) prepared: Result<Prepared, String>,
+    prepared: Result<Prepared, String>,
     pub(crate) preparation: Preparation,
+}
+
+impl Ready {
+    /// What the algorithm made of the scene, or why it cannot.
+    pub(crate) fn prepared(&self) -> Result<&Prepared, String> {
+        self.prepared.as_ref().map_err(Clone::clone)
+    }
 }
 
 /// What an algorithm made from the mesh.
@@ -95,19 +103,51 @@ impl Lab {
         Ok(body)
     }
 
-    /// An algorithm of the list, prepared for a scene; `identity` tells scenes apart.
-    pub(crate) fn ready(
+    /// An algorithm of the list, made ready for a model on a box of the given edge lengths.
+    pub(crate) fn on_box(
+        &self,
+        algorithm: &str,
+        body: &Body,
+        extents_m: [f64; 3],
+    ) -> Result<Rc<Ready>, String> {
+        self.ready(algorithm, &body.identity, extents_m, || {
+            Ok(Cow::Borrowed(&body.mesh))
+        })
+    }
+
+    /// The same for a ball, an icosphere divided so many times.
+    pub(crate) fn ball_on_box(
+        &self,
+        algorithm: &str,
+        (radius_m, subdivisions): (f64, u32),
+        extents_m: [f64; 3],
+    ) -> Result<Rc<Ready>, String> {
+        let identity = format!("ball {radius_m} {subdivisions}");
+        self.ready(algorithm, &identity, extents_m, || {
+            let ball = Mesh::icosphere(radius_m, subdivisions);
+            ball.map(Cow::Owned).map_err(|e| e.to_string())
+        })
+    }
+
+    /// `identity` tells meshes apart; the mesh is asked for once.
+    fn ready<'m>(
         &self,
         algorithm: &str,
         identity: &str,
-        scene: &Scene<'_>,
+        extents_m: [f64; 3],
+        mesh: impl FnOnce() -> Result<Cow<'m, Mesh>, String>,
     ) -> Result<Rc<Ready>, String> {
         let method = &self.algorithms.get(algorithm)?.method;
-        let key = format!("{algorithm} {identity}");
+        let key = format!("{algorithm} {identity} {extents_m:?}");
         if let Some(ready) = self.ready.borrow().get(&key) {
             return Ok(ready.clone());
         }
-        let ready = Rc::new(prepare(method, scene, &self.assets));
+        let mesh = mesh()?;
+        let scene = Scene {
+            body: &mesh,
+            ground: Ground::Cuboid(extents_m),
+        };
+        let ready = Rc::new(prepare(method, &scene, &self.assets));
         self.ready.borrow_mut().insert(key, ready.clone());
         Ok(ready)
     }

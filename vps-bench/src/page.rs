@@ -75,6 +75,18 @@ impl Table {
     }
 }
 
+/// Digits in groups of three.
+pub(crate) fn grouped(digits: &str) -> String {
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Three significant digits; a dash for what is no number.
 pub(crate) fn short(value: impl Into<Option<f64>>) -> String {
     match value.into() {

@@ -11,7 +11,7 @@ use vps_build::write_atomically;
 use crate::archive::{Archive, JobRecord, Rows};
 use crate::config::ExperimentFile;
 use crate::environment::Environment;
-use crate::experiments::{Error, Experiment};
+use crate::experiments::Error;
 use crate::job::{Job, Shard};
 use crate::lab::{Lab, Preparation};
 use crate::models::sha256;
@@ -63,13 +63,14 @@ pub(crate) fn run(
     let jobs = experiment.jobs(choice.quick);
     let core = choice.is_pinned.then(|| pin::to_one_core(choice.shard));
     let environment = Environment::of_now(core.flatten());
-    let identity = experiment.identity(lab)?;
+    let identity = format!("{} {}", experiment.identity(lab)?, experiment.settings()?);
     let mut outcome = Outcome {
         run: 0,
         kept: 0,
         missing: 0,
         failures: Vec::new(),
     };
+    let mut records = Vec::new();
     let progress = ProgressBar::new(jobs.len() as u64);
     let style = "{bar:30} {pos}/{len} jobs, {elapsed} of about {duration}  {msg}";
     progress.set_style(ProgressStyle::with_template(style)?);
@@ -77,13 +78,14 @@ pub(crate) fn run(
     for (number, job) in jobs.iter().enumerate() {
         progress.inc(1);
         let id = format!("{name}/{}", job.id());
-        let settings = settings_of(experiment, job, &identity, lab)?;
+        let settings = settings_of(job, &identity, lab)?;
         let known = archive.record(job)?.filter(|record| {
             let is_same = record.environment.program == environment.program;
             record.status == "ok" && record.settings == settings && is_same
         });
-        if known.is_some() {
+        if let Some(record) = known {
             outcome.kept += 1;
+            records.push(record);
             continue;
         }
         if !choice.shard.has(number) || choice.filter.is_some_and(|f| !id.contains(f)) {
@@ -106,31 +108,23 @@ pub(crate) fn run(
         };
         archive.write(&record, &rows)?;
         outcome.run += 1;
+        records.push(record);
     }
     progress.finish_and_clear();
     if outcome.missing == 0 {
-        outcome.failures = summarize(file, choice.quick, &archive, &jobs, folder)?;
+        outcome.failures = summarize(file, choice.quick, &archive, &records, folder)?;
         experiment.draw(lab, folder)?;
     }
     Ok(outcome)
 }
 
 /// A number for all that decides what a job does.
-fn settings_of(
-    experiment: &dyn Experiment,
-    job: &Job,
-    identity: &str,
-    lab: &Lab,
-) -> Result<String, Error> {
+fn settings_of(job: &Job, identity: &str, lab: &Lab) -> Result<String, Error> {
     let algorithm = match lab.algorithms.get(&job.algorithm) {
         Ok(algorithm) => serde_json::to_string(&algorithm.method)?,
         Err(_) => String::new(),
     };
-    let all = format!(
-        "{} {} {identity} {algorithm}",
-        job.id(),
-        experiment.settings()?
-    );
+    let all = format!("{} {identity} {algorithm}", job.id());
     Ok(sha256(all.as_bytes()))
 }
 
@@ -139,18 +133,13 @@ fn summarize(
     file: &ExperimentFile,
     quick: bool,
     archive: &Archive,
-    jobs: &[Job],
+    records: &[JobRecord],
     folder: &Path,
 ) -> Result<Vec<String>, Error> {
-    let mut records = Vec::new();
-    for job in jobs {
-        let record = archive.record(job)?;
-        records.push(record.ok_or_else(|| format!("{} has not been run", job.id()))?);
-    }
     let Some(first) = records.first() else {
         return Err("there is nothing to run".into());
     };
-    for record in &records {
+    for record in records {
         if let Some(difference) = first.environment.difference(&record.environment) {
             let [a, b] = [first, record].map(|r| r.job.id());
             return Err(format!("{a} and {b} cannot stand in one table: {difference}").into());
@@ -162,7 +151,7 @@ fn summarize(
         .collect();
     failures.dedup();
     let done: Vec<_> = records.iter().filter(|r| r.status == "ok").collect();
-    crate::frame::write(&folder.join("jobs.csv"), &job_table(&records)?)?;
+    crate::frame::write(&folder.join("jobs.csv"), &job_table(records)?)?;
     if !done.is_empty() {
         let rows = archive.rows(&done.iter().map(|r| &r.job).collect::<Vec<_>>())?;
         for (name, table) in file.kind()?.summarize(&rows)? {

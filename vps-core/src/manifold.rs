@@ -30,10 +30,10 @@ const ASKEW: f32 = 0.25;
 /// What a point adds to the area counts less the further outside of the solid it is, half at a
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than half of what the deepest does only fill up what places the others leave, up to four: a body may
-/// fall on them next. And it counts less the more its normal is askew, down to a quarter: points a little
-/// inside of an edge come before those on it, whose normals belong to neither side. Of equally good
-/// contacts the first is taken.
+/// than half of what the deepest does only fill up what places the others leave, up to four: a body
+/// may fall on them next. And it counts less the more its normal is askew, down to a quarter: points
+/// a little inside of an edge come before those on it, whose normals belong to neither side. Of
+/// equally good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],

@@ -16,6 +16,7 @@ mod world;
 use std::path::Path;
 
 use polars::prelude::DataFrame;
+use serde::Serialize;
 
 use crate::algorithms::Algorithms;
 use crate::archive::Rows;
@@ -30,6 +31,16 @@ pub(crate) type Error = Box<dyn std::error::Error>;
 pub(crate) struct Measured {
     pub(crate) rows: Rows,
     pub(crate) preparation: Preparation,
+}
+
+impl Measured {
+    /// A row each, and what the algorithm was made from.
+    pub(crate) fn of<R: Serialize>(rows: &[R], preparation: &Preparation) -> Result<Self, String> {
+        Ok(Self {
+            rows: Rows::of(rows)?,
+            preparation: preparation.clone(),
+        })
+    }
 }
 
 /// A kind of experiment with its settings.

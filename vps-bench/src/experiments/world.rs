@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use rapier3d::prelude::*;
-use vps_compare::Dispatcher;
+use vps_compare::{Dispatcher, summary};
 
 use crate::timed::{Queries, Stopwatch, Timed};
 
@@ -48,6 +48,27 @@ impl World {
         let below = Vector::new(0.0, -0.5 * extents_m[1] as f32, 0.0);
         self.physics
             .insert(RigidBodyBuilder::fixed().translation(below), ground);
+    }
+
+    /// Adds a body of a mass, with an inertia about its centre of mass, whatever an algorithm made
+    /// of its shape.
+    pub(super) fn insert_body(
+        &mut self,
+        collider: ColliderBuilder,
+        pose: Pose,
+        mass: MassProperties,
+    ) -> RigidBodyHandle {
+        let builder = RigidBodyBuilder::dynamic()
+            .pose(pose)
+            .additional_mass_properties(mass)
+            .can_sleep(false);
+        self.physics.insert(builder, collider.density(0.0)).0
+    }
+
+    /// Contact points given to the solver in the last step, and the deepest of them.
+    pub(super) fn contacts(&self) -> (usize, Option<f32>) {
+        let pairs = self.physics.narrow_phase.contact_pairs();
+        summary(pairs.flat_map(|pair| pair.solver_manifolds().iter()))
     }
 
     /// Steps once; gives what its queries took.

@@ -22,7 +22,6 @@ use vps_core::{DistanceField, Voxelmap, Wrench};
 use self::shape::Shape;
 use super::{Error, Experiment, Measured};
 use crate::algorithms::Algorithms;
-use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::positive;
 use crate::job::Job;
@@ -214,10 +213,7 @@ impl Experiment for Settings {
             Some(method) => self.fields(shape, method, lab)?,
             None => self.shells(shape, lab)?,
         };
-        Ok(Measured {
-            rows: Rows::of(&rows)?,
-            preparation: Preparation::default(),
-        })
+        Measured::of(&rows, &Preparation::default())
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {

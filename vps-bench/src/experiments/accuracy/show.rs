@@ -5,7 +5,7 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 
 use super::{Method, SHELL, Settings};
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::experiments::power_law::{Labels, Series, color, figure};
 use crate::frame::{Row, rows};
@@ -16,12 +16,11 @@ pub(super) fn present(
     tables: &Tables,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let table = |name: &str| tables.get(name).ok_or_else(|| format!("no table `{name}`"));
-    let (field, shell) = (table("field")?, table("shell")?);
+    let (field, shell) = (table(tables, "field")?, table(tables, "shell")?);
     let shapes: Vec<_> = settings.shapes.iter().map(|s| s.name()).collect();
     let mut blocks = vec![
-        slopes("Slopes by voxel size", table("field_slopes")?),
-        slopes("Slopes by number of points", table("shell_slopes")?),
+        slopes("Slopes by voxel size", table(tables, "field_slopes")?),
+        slopes("Slopes by number of points", table(tables, "shell_slopes")?),
         values("Voxelmaps by voxel size", "voxel, mm", field),
         values("Pointshells by number of points", "points", shell),
     ];

@@ -7,10 +7,10 @@ use polars::prelude::DataFrame;
 
 use super::{Case, Settings};
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::figure::{Axis, Curve, Figure, Mark};
-use crate::frame::{Row, rows};
+use crate::frame::{Row, rows_of};
 use crate::page::{Block, FigureLink, Table, fixed};
 
 pub(super) fn present(
@@ -19,11 +19,10 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let table = |name: &str| tables.get(name).ok_or_else(|| format!("no table `{name}`"));
     let page = Page {
         settings,
-        summary: table("summary")?,
-        course: table("course")?,
+        summary: table(tables, "summary")?,
+        course: table(tables, "course")?,
         algorithms,
     };
     let mut blocks = vec![page.depths()?, page.apexes()?, page.wanders()?];
@@ -46,7 +45,7 @@ const EXACT: RGBColor = RGBColor(0, 0, 0);
 impl Page<'_> {
     fn of(&self, case: Case, algorithm: &str) -> Option<Row<'_>> {
         let case = case.name();
-        rows(self.summary).find(|r| r.text("case") == case && r.text("algorithm") == algorithm)
+        rows_of(self.summary, &case, algorithm).next()
     }
 
     /// A row a case, behind some columns one for each algorithm.
@@ -147,9 +146,8 @@ impl Page<'_> {
         }];
         let name = case.name();
         for algorithm in &settings.algorithms {
-            let of_both = rows(self.course)
-                .filter(|r| r.text("case") == name && r.text("algorithm") == *algorithm);
-            let points = of_both.filter_map(|r| r.number("time_s").zip(r.number("height_m")));
+            let course = rows_of(self.course, &name, algorithm);
+            let points = course.filter_map(|r| r.number("time_s").zip(r.number("height_m")));
             let of_list = self.algorithms.get(algorithm)?;
             curves.push(Curve {
                 label: of_list.label.clone(),

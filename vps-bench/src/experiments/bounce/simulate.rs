@@ -2,7 +2,7 @@
 
 use rapier3d::prelude::*;
 use serde::Serialize;
-use vps_compare::{Prepared, summary};
+use vps_compare::Prepared;
 
 use super::{Case, Settings};
 use crate::experiments::orientation::random_orientation;
@@ -59,13 +59,8 @@ impl Settings {
             self.mass_kg as f32,
             ball_inertia(self.mass_kg, self.radius_m),
         );
-        let builder = RigidBodyBuilder::dynamic()
-            .pose(Pose::from_parts(start, rotation))
-            .additional_mass_properties(mass)
-            .can_sleep(false);
-        let (ball, _) = world
-            .physics
-            .insert(builder, material(&prepared.body).density(0.0));
+        let pose = Pose::from_parts(start, rotation);
+        let ball = world.insert_body(material(&prepared.body), pose, mass);
         let mut rows = Vec::new();
         for step in 0..self.steps() {
             let center = world.physics.bodies[ball].translation();
@@ -74,9 +69,7 @@ impl Settings {
                 break;
             }
             world.step()?;
-            let pairs = world.physics.narrow_phase.contact_pairs();
-            let manifolds = pairs.flat_map(|pair| pair.solver_manifolds().iter());
-            let (contacts, penetration_m) = summary(manifolds);
+            let (contacts, penetration_m) = world.contacts();
             let body = &world.physics.bodies[ball];
             if !body.position().is_finite() {
                 return Err(format!("the ball left all bounds in step {step}"));

@@ -10,12 +10,10 @@ use std::rc::Rc;
 use polars::prelude::DataFrame;
 use rapier3d::math::Pose;
 use serde::{Deserialize, Serialize};
-use vps_compare::{Ground, Scene};
 
 use self::simulate::StepRow;
 use super::{Error, Experiment, Measured};
 use crate::algorithms::Algorithms;
-use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::{not_negative, positive};
 use crate::job::Job;
@@ -121,12 +119,7 @@ impl Settings {
         algorithm: &str,
     ) -> Result<(Rc<Body>, Rc<Ready>), String> {
         let body = lab.body(&self.model, self.scale)?;
-        let scene = Scene {
-            body: &body.mesh,
-            ground: Ground::Cuboid(self.ground_extents_m),
-        };
-        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
-        let ready = lab.ready(algorithm, &identity, &scene)?;
+        let ready = lab.on_box(algorithm, &body, self.ground_extents_m)?;
         Ok((body, ready))
     }
 
@@ -139,7 +132,7 @@ impl Settings {
     /// side of the ground being at height 0.
     pub(super) fn trace(&self, lab: &Lab, seed: u32) -> Result<Vec<Pose>, String> {
         let (body, ready) = self.ready(lab, &self.algorithms[0])?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let prepared = ready.prepared()?;
         let steps = self.simulate(&body, prepared, self.frequencies_hz[0], seed)?;
         Ok(steps.iter().map(StepRow::pose).collect())
     }
@@ -200,13 +193,7 @@ impl Experiment for Settings {
         let mut jobs = Vec::new();
         for seed in 0..seeds {
             for &frequency in &self.frequencies_hz {
-                for algorithm in &self.algorithms {
-                    jobs.push(Job {
-                        case: Self::case(frequency),
-                        algorithm: algorithm.clone(),
-                        seed,
-                    });
-                }
+                jobs.extend(Job::of_each(&self.algorithms, Self::case(frequency), seed));
             }
         }
         jobs
@@ -233,17 +220,14 @@ impl Experiment for Settings {
 
     fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
         let (body, ready) = self.ready(lab, &job.algorithm)?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let prepared = ready.prepared()?;
         let frequency = self
             .frequencies_hz
             .iter()
             .find(|f| Self::case(**f) == job.case);
         let frequency = *frequency.ok_or_else(|| format!("no case `{}`", job.case))?;
         let rows = self.simulate(&body, prepared, frequency, job.seed)?;
-        Ok(Measured {
-            rows: Rows::of(&rows)?,
-            preparation: ready.preparation.clone(),
-        })
+        Measured::of(&rows, &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {

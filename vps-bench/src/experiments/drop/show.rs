@@ -6,10 +6,10 @@ use polars::prelude::DataFrame;
 
 use super::{Settings, Show};
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::figure::{Axis, Curve, Figure, Mark, decades};
-use crate::frame::{Row, rows};
+use crate::frame::{Row, rows_of};
 use crate::page::{Block, FigureLink, Table, fixed, short};
 
 pub(super) fn present(
@@ -18,8 +18,7 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let table = |name: &str| tables.get(name).ok_or_else(|| format!("no table `{name}`"));
-    let (summary, course) = (table("summary")?, table("course")?);
+    let (summary, course) = (table(tables, "summary")?, table(tables, "course")?);
     let page = Page {
         settings,
         summary,
@@ -71,7 +70,7 @@ impl Page<'_> {
 
     /// The row of an algorithm in a case.
     fn of(&self, case: &str, algorithm: &str) -> Option<Row<'_>> {
-        rows(self.summary).find(|r| r.text("case") == case && r.text("algorithm") == algorithm)
+        rows_of(self.summary, case, algorithm).next()
     }
 
     /// The case curves are drawn of.
@@ -141,9 +140,7 @@ impl Page<'_> {
         let case = self.first_case();
         let mut curves = Vec::new();
         for name in &self.settings.algorithms {
-            let of_both = rows(self.course)
-                .filter(|r| r.text("case") == case && r.text("algorithm") == *name);
-            let points: Vec<_> = of_both
+            let points: Vec<_> = rows_of(self.course, &case, name)
                 .map(|row| {
                     let value = row.number(column).filter(|v| *v > least);
                     (row.number("step").unwrap_or_default(), value)

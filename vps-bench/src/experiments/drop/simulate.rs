@@ -2,7 +2,7 @@
 
 use rapier3d::prelude::*;
 use serde::Serialize;
-use vps_compare::{Prepared, summary};
+use vps_compare::Prepared;
 use vps_core::Quat;
 
 use super::Settings;
@@ -68,11 +68,8 @@ impl Settings {
             let asked = *world.physics.bodies[body].position();
             let spin = world.physics.bodies[body].angvel();
             let queries = world.step()?;
-            let world = &world.physics;
-            let pairs = world.narrow_phase.contact_pairs();
-            let manifolds = pairs.flat_map(|pair| pair.solver_manifolds().iter());
-            let (contacts, penetration_m) = summary(manifolds);
-            let body = &world.bodies[body];
+            let (contacts, penetration_m) = world.contacts();
+            let body = &world.physics.bodies[body];
             if !body.position().is_finite() {
                 return Err(format!("the body left all bounds in step {step}"));
             }
@@ -126,14 +123,8 @@ impl Settings {
         let start = Vector::new(0.0, self.drop_height_m, 0.0) - rotation * center;
         let inertia = falling.mass.inertia_tensor(self.mass_kg);
         let mass = MassProperties::with_inertia_matrix(center, self.mass_kg, inertia);
-        let builder = RigidBodyBuilder::dynamic()
-            .pose(Pose::from_parts(start, rotation))
-            .additional_mass_properties(mass)
-            .can_sleep(false);
-        // All mass is that of the solid, whatever an algorithm made of it.
-        let (handle, _) = world
-            .physics
-            .insert(builder, material(&prepared.body).density(0.0));
-        (world, handle)
+        let pose = Pose::from_parts(start, rotation);
+        let body = world.insert_body(material(&prepared.body), pose, mass);
+        (world, body)
     }
 }

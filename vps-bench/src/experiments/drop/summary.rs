@@ -7,7 +7,6 @@ use crate::claims::Tables;
 use crate::experiments::Error;
 
 /// `summary`: a row a case and algorithm. `course`: the medians over all orientations, a row a step.
-/// `segments`: by case, how far apart the mean times of the algorithms are.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let mut parts = Vec::new();
     for &frequency in &settings.frequencies_hz {
@@ -96,12 +95,11 @@ fn of_one(
             .quantile(lit(0.99), QuantileMethod::Linear)
             .alias("spin_change_rad_s_p99"),
     ]);
-    // A body that is through has its centre below the ground's upper side.
-    let size = col("true_penetration_m").max();
     let whole = all.clone().select([
         (col("penetration_m").max() * lit(1e3)).alias("penetration_mm_max"),
-        (size * lit(1e3)).alias("true_penetration_mm_max"),
+        (col("true_penetration_m").max() * lit(1e3)).alias("true_penetration_mm_max"),
     ]);
+    // The ground's upper side is at height 0: a body with its origin below is through.
     let ends = all
         .group_by_stable([col("seed")])
         .agg([col("y_m")

@@ -18,7 +18,6 @@ use vps_compare::{Contacts, Prepared};
 
 use super::{Error, Experiment, Measured, drop};
 use crate::algorithms::Algorithms;
-use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::{not_negative, positive};
 use crate::job::Job;
@@ -147,13 +146,7 @@ impl Experiment for Settings {
 
     fn jobs(&self, quick: bool) -> Vec<Job> {
         let seeds = self.fall.seeds(quick);
-        let of_seed = |seed| {
-            self.algorithms.iter().map(move |algorithm| Job {
-                case: "fall".into(),
-                algorithm: algorithm.clone(),
-                seed,
-            })
-        };
+        let of_seed = |seed| Job::of_each(&self.algorithms, "fall".into(), seed);
         (0..seeds).flat_map(of_seed).collect()
     }
 
@@ -172,12 +165,9 @@ impl Experiment for Settings {
     fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
         let trace = self.fall.trace(lab, job.seed)?;
         let (body, ready) = self.fall.ready(lab, &job.algorithm)?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let prepared = ready.prepared()?;
         let rows = self.replay(&trace, &body, prepared)?;
-        Ok(Measured {
-            rows: Rows::of(&rows)?,
-            preparation: ready.preparation.clone(),
-        })
+        Measured::of(&rows, &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Settings;
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::figure::{Axis, Curve, Figure, decades};
 use crate::frame::{Row, rows};
@@ -19,7 +19,7 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let summary = tables.get("summary").ok_or("no table `summary`")?;
+    let summary = table(tables, "summary")?;
     let mut of_each = Vec::new();
     for name in &settings.algorithms {
         let algorithm = algorithms.get(name)?;

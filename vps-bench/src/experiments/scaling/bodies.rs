@@ -6,7 +6,7 @@ use std::time::Instant;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rapier3d::prelude::*;
-use vps_compare::{Ground, Prepared, Scene, summary};
+use vps_compare::{Prepared, summary};
 
 use super::{Settings, TimeRow};
 use crate::experiments::orientation::orientation_of;
@@ -16,13 +16,8 @@ use crate::timed::{Stopwatch, Timed};
 impl Settings {
     pub(super) fn steps(&self, algorithm: &str, lab: &Lab) -> Result<Vec<TimeRow>, String> {
         let body = lab.body(&self.model, self.scale)?;
-        let scene = Scene {
-            body: &body.mesh,
-            ground: Ground::Cuboid(self.ground_extents_m),
-        };
-        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
-        let ready = lab.ready(algorithm, &identity, &scene)?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let ready = lab.on_box(algorithm, &body, self.ground_extents_m)?;
+        let prepared = ready.prepared()?;
         let mut rows = Vec::new();
         for &count in &self.bodies.counts {
             let stopwatch = Arc::new(Stopwatch::default());

@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Error, Experiment, Measured};
 use crate::algorithms::Algorithms;
-use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::positive;
 use crate::job::Job;
@@ -244,10 +243,7 @@ impl Experiment for Settings {
             Some(ask) => self.times(case, ask, lab)?,
             None => self.steps(&job.algorithm, lab)?,
         };
-        Ok(Measured {
-            rows: Rows::of(&rows)?,
-            preparation: Preparation::default(),
-        })
+        Measured::of(&rows, &Preparation::default())
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {

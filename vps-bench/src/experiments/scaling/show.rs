@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Ask, Case, Settings};
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::experiments::power_law::{Labels, Series, color, figure};
 use crate::frame::rows;
@@ -16,8 +16,7 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let table = |name: &str| tables.get(name).ok_or_else(|| format!("no table `{name}`"));
-    let (times, slopes) = (table("times")?, table("slopes")?);
+    let (times, slopes) = (table(tables, "times")?, table(tables, "slopes")?);
     let label = |name: &str| -> String {
         let ask = Ask::ALL.into_iter().find(|ask| ask.name() == name);
         let listed = algorithms.get(name).map(|a| a.label.clone());

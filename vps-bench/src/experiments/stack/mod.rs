@@ -8,12 +8,9 @@ use std::path::Path;
 
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
-use vps_build::Mesh;
-use vps_compare::{Ground, Scene};
 
 use super::{Error, Experiment, Measured};
 use crate::algorithms::Algorithms;
-use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::{not_negative, positive};
 use crate::job::Job;
@@ -99,11 +96,7 @@ impl Experiment for Settings {
         let mut jobs = Vec::new();
         for seed in 0..seeds {
             for &balls in &self.balls {
-                jobs.extend(self.algorithms.iter().map(|algorithm| Job {
-                    case: Self::case(balls),
-                    algorithm: algorithm.clone(),
-                    seed,
-                }));
+                jobs.extend(Job::of_each(&self.algorithms, Self::case(balls), seed));
             }
         }
         jobs
@@ -125,25 +118,14 @@ impl Experiment for Settings {
     }
 
     fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        let mesh = Mesh::icosphere(self.radius_m, self.subdivisions).map_err(|e| e.to_string())?;
-        let scene = Scene {
-            body: &mesh,
-            ground: Ground::Cuboid(self.ground_extents_m),
-        };
-        let identity = format!(
-            "ball {} {} {:?}",
-            self.radius_m, self.subdivisions, self.ground_extents_m
-        );
-        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let ball = (self.radius_m, self.subdivisions);
+        let ready = lab.ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
+        let prepared = ready.prepared()?;
         let mut cases = self.balls.iter();
         let balls = cases.find(|balls| Self::case(**balls) == job.case);
         let balls = *balls.ok_or_else(|| format!("no case `{}`", job.case))?;
         let row = self.simulate(prepared, balls, job.seed)?;
-        Ok(Measured {
-            rows: Rows::of(&[row])?,
-            preparation: ready.preparation.clone(),
-        })
+        Measured::of(&[row], &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {

@@ -4,9 +4,9 @@ use polars::prelude::DataFrame;
 
 use super::Settings;
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
-use crate::frame::{Row, rows};
+use crate::frame::{Row, rows_of};
 use crate::page::{Block, Table, fixed};
 
 pub(super) fn present(
@@ -14,7 +14,7 @@ pub(super) fn present(
     tables: &Tables,
     algorithms: &Algorithms,
 ) -> Result<Vec<Block>, Error> {
-    let summary = tables.get("summary").ok_or("no table `summary`")?;
+    let summary = table(tables, "summary")?;
     let stood = |row: &Row<'_>| {
         let time = |column: &str| match row.number(column) {
             Some(time) if time >= settings.duration_s => format!("> {}", settings.duration_s),
@@ -66,8 +66,7 @@ fn by_balls(
     for name in &settings.algorithms {
         let cells = settings.balls.iter().map(|&balls| {
             let case = Settings::case(balls);
-            let row =
-                rows(summary).find(|r| r.text("case") == case && r.text("algorithm") == *name);
+            let row = rows_of(summary, &case, name).next();
             row.map_or_else(|| "–".into(), |row| cell(&row))
         });
         let cells: Vec<_> = cells.collect();

@@ -134,14 +134,8 @@ impl Settings {
             let aside = self.offset_m * area.sqrt();
             let height = self.radius_m * f64::from(2 * number + 1);
             let center = Vector::new((aside * cos) as f32, height as f32, (aside * sin) as f32);
-            let builder = RigidBodyBuilder::dynamic()
-                .pose(Pose::from_parts(center, orientation_of(rng.random())))
-                .additional_mass_properties(mass)
-                .can_sleep(false);
-            world
-                .physics
-                .insert(builder, material(&prepared.body).density(0.0))
-                .0
+            let pose = Pose::from_parts(center, orientation_of(rng.random()));
+            world.insert_body(material(&prepared.body), pose, mass)
         });
         let handles = handles.collect();
         (world, handles)

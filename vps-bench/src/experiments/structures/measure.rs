@@ -8,7 +8,6 @@ use vps_build::{BuildOptions, ClosestPoints, PointCount, Stage, build};
 use vps_core::{Asset, Cluster, encode};
 
 use super::{Settings, VOXELMAPS, clustering, vps};
-use crate::archive::Rows;
 use crate::experiments::Measured;
 use crate::job::Job;
 use crate::lab::{Lab, Preparation, body_options};
@@ -114,10 +113,7 @@ pub(super) fn run(settings: &Settings, job: &Job, lab: &Lab) -> Result<Measured,
     if map.is_none() {
         rows.extend(levels(&asset, &rows[0]));
     }
-    Ok(Measured {
-        rows: Rows::of(&rows)?,
-        preparation,
-    })
+    Measured::of(&rows, &preparation)
 }
 
 /// A row a level, like that of the whole.

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::pictures::PICTURES;
 use super::{SHELLS, Settings};
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::frame::{Row, rows};
 use crate::page::{Block, FigureLink, Table, fixed, short};
@@ -16,11 +16,10 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let table = |name: &str| tables.get(name).ok_or_else(|| format!("no table `{name}`"));
-    let mut blocks = vec![Block::Table(voxelmaps(rows(table("voxelmaps")?)))];
-    let shells = rows(table("pointshells")?);
+    let mut blocks = vec![Block::Table(voxelmaps(rows(table(tables, "voxelmaps")?)))];
+    let shells = rows(table(tables, "pointshells")?);
     blocks.push(Block::Table(pointshells(shells, algorithms)?));
-    let levels: Vec<_> = rows(table("levels")?).collect();
+    let levels: Vec<_> = rows(table(tables, "levels")?).collect();
     blocks.push(Block::Table(clusters(settings, &levels, algorithms)?));
     let mut missing = Vec::new();
     for picture in &PICTURES {

@@ -11,12 +11,10 @@ use std::time::Duration;
 
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
-use vps_compare::{Ground, Scene};
 use vps_rapier::VpsShape;
 
 use super::{Error, Experiment, Measured};
 use crate::algorithms::{Algorithms, Method, SamplingName};
-use crate::archive::Rows;
 use crate::claims::Tables;
 use crate::config::{not_negative, positive};
 use crate::job::Job;
@@ -149,11 +147,7 @@ impl Experiment for Settings {
         let mut jobs = Vec::new();
         for seed in 0..self.deadline_batches.max(self.budget_batches) {
             for limit in self.limits().filter(|limit| seed < batches(*limit)) {
-                jobs.extend(self.algorithms.iter().map(|algorithm| Job {
-                    case: limit.case(),
-                    algorithm: algorithm.clone(),
-                    seed,
-                }));
+                jobs.extend(Job::of_each(&self.algorithms, limit.case(), seed));
             }
         }
         jobs
@@ -183,13 +177,8 @@ impl Experiment for Settings {
         let limit = self.limits().find(|limit| limit.case() == job.case);
         let limit = limit.ok_or_else(|| format!("no case `{}`", job.case))?;
         let body = lab.body(&self.model, self.scale)?;
-        let scene = Scene {
-            body: &body.mesh,
-            ground: Ground::Cuboid(self.ground_extents_m),
-        };
-        let identity = format!("{} {:?}", body.identity, self.ground_extents_m);
-        let ready = lab.ready(&job.algorithm, &identity, &scene)?;
-        let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
+        let ready = lab.on_box(&job.algorithm, &body, self.ground_extents_m)?;
+        let prepared = ready.prepared()?;
         let shape = prepared.body.as_shape::<VpsShape>();
         let ground = prepared.ground.as_shape::<VpsShape>();
         let (Some(shape), Some(ground)) = (shape, ground) else {
@@ -202,10 +191,7 @@ impl Experiment for Settings {
             SamplingName::Trilinear => measure(self, limit, tree, &map.trilinear(), center, &poses),
             SamplingName::Local => measure(self, limit, tree, &map.local(), center, &poses),
         };
-        Ok(Measured {
-            rows: Rows::of(&[row?])?,
-            preparation: ready.preparation.clone(),
-        })
+        Measured::of(&[row?], &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {

@@ -7,10 +7,10 @@ use polars::prelude::DataFrame;
 
 use super::{Limit, Settings};
 use crate::algorithms::Algorithms;
-use crate::claims::Tables;
+use crate::claims::{Tables, table};
 use crate::experiments::Error;
 use crate::figure::{Axis, Curve, Figure, decades};
-use crate::frame::{Row, rows};
+use crate::frame::{Row, rows_of};
 use crate::page::{Block, FigureLink, Table, fixed, short};
 
 pub(super) fn present(
@@ -21,7 +21,7 @@ pub(super) fn present(
 ) -> Result<Vec<Block>, Error> {
     let page = Page {
         settings,
-        summary: tables.get("summary").ok_or("no table `summary`")?,
+        summary: table(tables, "summary")?,
         algorithms,
         folder,
     };
@@ -64,7 +64,7 @@ const QUANTILES: [(&str, &str, RGBColor); 3] = [
 impl Page<'_> {
     fn of(&self, limit: Limit, algorithm: &str) -> Option<Row<'_>> {
         let case = limit.case();
-        rows(self.summary).find(|r| r.text("case") == case && r.text("algorithm") == algorithm)
+        rows_of(self.summary, &case, algorithm).next()
     }
 
     fn label(&self, algorithm: &str) -> Result<&str, Error> {

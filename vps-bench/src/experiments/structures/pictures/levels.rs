@@ -2,7 +2,7 @@
 
 use vps_core::{Cluster, Pose3, Vec3};
 
-use super::{Panels, Subject, draw_mesh, grouped};
+use super::{Panels, Subject, count, draw_mesh};
 use crate::render::{Canvas, Color, Sheet, View, colors};
 
 /// How many levels are drawn, from the second on.
@@ -46,7 +46,7 @@ fn panels(
         let mesh = &subject.body.mesh;
         draw_mesh(&mut canvas, &view, mesh, Pose3::IDENTITY, colors::PALE);
         draw(&mut canvas, &view, clusters, color);
-        let title = format!("level {level}: {} {what}", grouped(clusters.len()));
+        let title = format!("level {level}: {} {what}", count(clusters.len()));
         panels.push(&title, &canvas)?;
     }
     Ok(panels.sheet)

@@ -17,6 +17,7 @@ use vps_core::{Asset, Pose3, Vec3};
 
 use super::{Settings, vps};
 use crate::lab::{Body, Lab, body_options};
+use crate::page::grouped;
 use crate::render::{Anchor, Canvas, Color, Sheet, View};
 
 /// A picture and what it shows.
@@ -220,15 +221,7 @@ impl Panels {
     }
 }
 
-/// A number of digits in groups of three.
-fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
+/// A number of things as people read it.
+fn count(n: usize) -> String {
+    grouped(&n.to_string())
 }

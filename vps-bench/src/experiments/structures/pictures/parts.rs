@@ -2,9 +2,8 @@
 
 use rapier3d::math::Pose;
 use rapier3d::parry::shape::{ConvexPolyhedron, SharedShape};
-use vps_compare::{Ground, Scene};
 
-use super::{Panels, Subject, grouped, shells};
+use super::{Panels, Subject, count, shells};
 use crate::render::{Canvas, Color, Sheet, View, colors};
 
 pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
@@ -43,22 +42,16 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     shells::points(&mut canvas, &view, &subject.fine, |point| {
         colors::distinct(segment[point])
     });
-    let count = grouped(tree.level(level).len());
-    let title = format!("(c) segments of level {level}: {count}");
+    let segments = count(tree.level(level).len());
+    let title = format!("(c) segments of level {level}: {segments}");
     panels.push(&title, &canvas)?;
     Ok(panels.sheet)
 }
 
 /// What an algorithm makes of the mesh; the ground does not matter.
 fn shape(subject: &Subject<'_>, algorithm: &str) -> Result<SharedShape, String> {
-    let scene = Scene {
-        body: &subject.body.mesh,
-        ground: Ground::Cuboid([1.0; 3]),
-    };
-    let identity = format!("{} drawn", subject.body.identity);
-    let ready = subject.lab.ready(algorithm, &identity, &scene)?;
-    let prepared = ready.prepared.as_ref().map_err(Clone::clone)?;
-    Ok(prepared.body.clone())
+    let ready = subject.lab.on_box(algorithm, &subject.body, [1.0; 3])?;
+    Ok(ready.prepared()?.body.clone())
 }
 
 fn polyhedron(canvas: &mut Canvas, view: &View, part: &ConvexPolyhedron, pose: Pose, color: Color) {

@@ -2,7 +2,7 @@
 
 use vps_core::{Asset, Pose3, Vec3};
 
-use super::{Panels, Subject, draw_mesh, grouped};
+use super::{Panels, Subject, count, draw_mesh};
 use crate::render::{Canvas, Sheet, View, colors};
 
 pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
@@ -11,7 +11,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     let mut panels = Panels::new(3, 3, [350, 340], 0);
     let mut canvas = panels.canvas();
     draw_mesh(&mut canvas, &view, mesh, Pose3::IDENTITY, colors::PALE);
-    let title = format!("mesh: {} triangles", grouped(mesh.triangles().len()));
+    let title = format!("mesh: {} triangles", count(mesh.triangles().len()));
     panels.push(&title, &canvas)?;
     for (asset, color) in [
         (&subject.coarse, colors::BLUE),
@@ -22,7 +22,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         for i in 0..asset.tree.point_count() {
             canvas.ball(&view, asset.tree.point(i), radius(asset), color);
         }
-        let title = format!("pointshell: {} points", grouped(asset.tree.point_count()));
+        let title = format!("pointshell: {} points", count(asset.tree.point_count()));
         panels.push(&title, &canvas)?;
     }
     Ok(panels.sheet)

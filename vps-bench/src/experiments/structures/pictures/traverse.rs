@@ -2,7 +2,7 @@
 
 use vps_core::{Cluster, DistanceField, HalfSpace, PointSphereTree, Pose3, Query, Vec3, Work};
 
-use super::{Panels, Subject, draw_mesh, grouped};
+use super::{Panels, Subject, count, draw_mesh};
 use crate::render::{Canvas, Color, Sheet, View, colors};
 
 const SIDE: u32 = 520;
@@ -55,19 +55,19 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     let entries = [
         (
             PASSED,
-            format!("{} spheres that reach the ground", grouped(descended)),
+            format!("{} spheres that reach the ground", count(descended)),
         ),
         (
             colors::GREY,
-            format!("{} tested and left out", grouped(left_out)),
+            format!("{} tested and left out", count(left_out)),
         ),
         (
             colors::ORANGE,
-            format!("{} points tested", grouped(seen.points.len())),
+            format!("{} points tested", count(seen.points.len())),
         ),
         (
             colors::VERMILION,
-            format!("{} of them in the ground", grouped(inside)),
+            format!("{} of them in the ground", count(inside)),
         ),
     ];
     let top = 430 + Panels::HEAD + 8;
@@ -77,7 +77,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     query.for_each_contact(|_| ());
     let all = format!(
         "{} points in all. The query itself, which also knows how flat clusters are: {} spheres, {} points",
-        grouped(tree.point_count()),
+        count(tree.point_count()),
         work.spheres(),
         work.points()
     );
