@@ -266,14 +266,23 @@ impl Edges {
         moved.of_shape(part, first, radius, &mut (&mut back as &mut dyn FnMut(Tip)));
     }
 
-    /// The box in the frame of the shape.
+    /// What holds the box, in the frame of the shape, as parry has it.
     fn local_box(&self, radius: f32) -> ParryAabb {
+        let around = self.local_bounds(radius);
+        ParryAabb::new(vector(around.min), vector(around.max))
+    }
+
+    /// What holds the box, in the frame of the shape.
+    fn local_bounds(&self, radius: f32) -> Aabb {
         let inverse = self.pose.inverse();
         let half = 0.5 * self.around.extents() + radius;
         let center = inverse.transform_point(self.around.center());
         let axes = unsigned_axes(&inverse);
         let reach = axes[0] * half.x + axes[1] * half.y + axes[2] * half.z;
-        ParryAabb::new(vector(center - reach), vector(center + reach))
+        Aabb {
+            min: center - reach,
+            max: center + reach,
+        }
     }
 
     fn segment(&self, segment: &Segment, first: u32, radius: f32, visit: &mut impl FnMut(Tip)) {
@@ -298,11 +307,15 @@ impl Edges {
             let side = |axis: u32| if i >> axis & 1 == 1 { 1.0 } else { -1.0 };
             half * Vec3::new(side(0), side(1), side(2))
         };
+        // What stands on a face is near none of them.
+        let around = self.local_bounds(radius);
         let mut number = 0;
         for axis in 0..3 {
             for low in (0..8).filter(|i| i >> axis & 1 == 0) {
-                let ends = [corner(low), corner(low | 1 << axis)];
-                self.edge(ends, first.wrapping_add(number << 12), radius, visit);
+                let [min, max] = [corner(low), corner(low | 1 << axis)];
+                if min.cmple(around.max).all() && max.cmpge(around.min).all() {
+                    self.edge([min, max], first.wrapping_add(number << 12), radius, visit);
+                }
                 number += 1;
             }
         }
