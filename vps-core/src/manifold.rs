@@ -15,8 +15,12 @@ const CLOSE: f32 = 0.01;
 /// are left.
 const LEAST_WEIGHT: f32 = 1.0 / 2.0;
 
-/// So many contacts hold a body whatever way it falls; no more are filled up.
+/// So many contacts hold a body on what is flat, whatever way it falls.
 const STANDS_ON: usize = 4;
+
+/// By which part of its distance from the deepest contact another one may be off the plane through
+/// that, and the field is flat: what a turn of its normal by 5 degrees makes on the way there.
+const BENT: f32 = 0.04;
 
 /// Those that count this part of it or more are kept when such are needed.
 const KEPT_WEIGHT: f32 = 1.0 / 256.0;
@@ -31,7 +35,9 @@ const ASKEW: f32 = 0.25;
 /// hundredth of the margin: the points a body stands on come before those that lie further apart
 /// above the ground, without which it would sink and rise and never rest. Those that count less
 /// than half of what the deepest does only fill up what places the others leave, up to four: a body
-/// may fall on them next. And it counts less the more its normal is askew, down to a quarter: points
+/// may fall on them next. More than four are picked only where the field is bent, that is where the
+/// penetrations of those that count enough are not those in a half-space: four hold a body on
+/// what is flat, but not in a thread. And it counts less the more its normal is askew, down to a quarter: points
 /// a little inside of an edge come before those on it, whose normals belong to neither side. Of
 /// equally good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,24 +58,20 @@ impl<const N: usize> ContactManifold<N> {
     };
 
     /// Picks from `contacts`, found by a query with `margin` metres. The area is that of the polygon
-    /// of the picked points seen `along` a unit vector in the shell frame, such as the normal of
-    /// the field at the deepest point. Costs `N` passes.
+    /// of the picked points seen `along` a unit vector in the shell frame, the direction in which
+    /// penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`] gives the same without a list of all contacts.
     pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
-        Self::pick(
-            best(contacts, |c| Some(c.penetration)),
-            |_| along,
-            margin,
-            |polygon| best(contacts, |c| polygon.score(c)),
-        )
+        let deepest = best(contacts, |c| Some(c.penetration));
+        Self::pick(deepest, |_| along, margin, &mut Listed(contacts))
     }
 
     fn pick(
         deepest: Option<Contact>,
         along: impl FnOnce(&Contact) -> Vec3,
         margin: f32,
-        mut next: impl FnMut(&Polygon<N>) -> Option<Contact>,
+        source: &mut impl Source<N>,
     ) -> Self {
         let mut manifold = Self::EMPTY;
         if N == 0 {
@@ -80,18 +82,22 @@ impl<const N: usize> ContactManifold<N> {
         };
         let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
         manifold.push(deepest);
-        let mut most = N;
+        let mut most = N.min(STANDS_ON);
+        let mut is_filled_up = false;
         while manifold.len < most {
-            let mut picked = next(&polygon);
-            if picked.is_none() && manifold.len < STANDS_ON && polygon.least > -margin {
-                (polygon.least, most) = (-margin, N.min(STANDS_ON));
-                picked = next(&polygon);
+            let mut picked = source.best(&polygon);
+            if picked.is_none() && manifold.len < STANDS_ON && !is_filled_up {
+                (polygon.least, is_filled_up) = (-margin, true);
+                picked = source.best(&polygon);
             }
             let Some(next) = picked else {
                 break;
             };
             polygon.insert(next.position);
             manifold.push(next);
+            if manifold.len == STANDS_ON && !is_filled_up && source.is_bent(&polygon) {
+                most = N;
+            }
         }
         manifold
     }
@@ -105,6 +111,37 @@ impl<const N: usize> ContactManifold<N> {
         self.contacts[self.len] = contact;
         self.len += 1;
     }
+}
+
+/// Contacts to pick from.
+trait Source<const N: usize> {
+    /// The one that adds the most to a polygon.
+    fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact>;
+
+    /// Whether one that counts enough is off the plane through the deepest.
+    fn is_bent(&self, polygon: &Polygon<N>) -> bool;
+}
+
+/// All contacts in a list.
+struct Listed<'c>(&'c [Contact]);
+
+impl<const N: usize> Source<N> for Listed<'_> {
+    fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact> {
+        best(self.0, |c| polygon.score(c))
+    }
+
+    fn is_bent(&self, polygon: &Polygon<N>) -> bool {
+        self.0.iter().any(|c| {
+            let position = Vectors::splat(c.position);
+            polygon.bent(position, f32x4::splat(c.penetration)).any()
+        })
+    }
+}
+
+/// The contacts of a query, and what is known of them.
+struct Searched<'q, 't, F: ?Sized, W> {
+    query: &'q Query<'t, F, W>,
+    near: Near,
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
@@ -122,45 +159,60 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         let mut near = Near::new(self.margin);
         self.find_from_hint(&mut near);
         near.drop_shallow();
-        ContactManifold::pick(
-            near.deepest.found,
-            |deepest| {
-                let at = self.rotation * deepest.position + self.translation;
-                let inward = self.rotation.transpose() * self.field.inward_direction(at);
-                if inward == Vec3::ZERO {
-                    deepest.normal
-                } else {
-                    inward
-                }
-            },
-            self.margin,
-            |polygon| {
-                if polygon.least < near.least && !near.is_full && !near.has_reached {
-                    near.reach_down();
-                    dispatch(
-                        #[inline(always)]
-                        || self.search(TOP, &mut near),
-                    );
-                }
-                let mut spread = Spread {
-                    polygon,
-                    below: f32::INFINITY,
-                    least: f32::MIN_POSITIVE,
-                    found: None,
-                };
-                if !near.is_full {
-                    dispatch(
-                        #[inline(always)]
-                        || near.offer_to(self.tree, &mut spread),
-                    );
-                    if near.least <= polygon.least {
-                        return spread.found;
-                    }
-                    spread.below = near.least;
-                }
-                self.find(spread).found
-            },
-        )
+        let deepest = near.deepest.found;
+        let along = |deepest: &Contact| {
+            let at = self.rotation * deepest.position + self.translation;
+            let inward = self.rotation.transpose() * self.field.inward_direction(at);
+            if inward == Vec3::ZERO {
+                -deepest.normal
+            } else {
+                inward
+            }
+        };
+        let mut source = Searched { query: self, near };
+        ContactManifold::pick(deepest, along, self.margin, &mut source)
+    }
+}
+
+impl<F, W, const N: usize> Source<N> for Searched<'_, '_, F, W>
+where
+    F: DistanceField + ?Sized,
+    W: CountWork,
+{
+    fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact> {
+        let near = &mut self.near;
+        if polygon.least < near.least && !near.is_full && !near.has_reached {
+            near.reach_down();
+            dispatch(
+                #[inline(always)]
+                || self.query.search(TOP, near),
+            );
+        }
+        let mut spread = Spread {
+            polygon,
+            below: f32::INFINITY,
+            least: f32::MIN_POSITIVE,
+            found: None,
+        };
+        if !near.is_full {
+            dispatch(
+                #[inline(always)]
+                || near.offer_to(self.query.tree, &mut spread),
+            );
+            if near.least <= polygon.least {
+                return spread.found;
+            }
+            spread.below = near.least;
+        }
+        self.query.find(spread).found
+    }
+
+    fn is_bent(&self, polygon: &Polygon<N>) -> bool {
+        if self.near.is_full {
+            return self.query.find(Bent::new(polygon)).found;
+        }
+        let mut kept = self.near.kept[..self.near.len].iter();
+        kept.any(|group| polygon.bent(group.positions, group.penetrations).any())
     }
 }
 
@@ -208,15 +260,26 @@ impl Near {
         }
     }
 
-    /// Offers what was kept.
+    /// Offers what was kept, first what is best but for its normal: little of the rest is left then
+    /// that could be better.
     #[inline(always)]
     fn offer_to<const N: usize>(&self, tree: &PointSphereTree<'_>, spread: &mut Spread<'_, N>) {
-        for group in &self.kept[..self.len] {
-            let scores = spread.polygon.scores(group.positions, group.penetrations);
-            let better = scores.simd_ge(f32x4::splat(spread.least));
-            for lane in lanes_in(better) {
-                let penetration = group.penetrations.to_array()[lane];
-                spread.consider(Contact::of(tree, group.first + lane as u32, penetration));
+        let kept = &self.kept[..self.len];
+        let mut scores = [f32x4::ZERO; KEPT];
+        let mut most = f32x4::splat(spread.least);
+        for (group, scores) in kept.iter().zip(&mut scores) {
+            *scores = spread.polygon.scores(group.positions, group.penetrations);
+            most = most.fast_max(*scores);
+        }
+        let most = most.to_array().into_iter().fold(spread.least, f32::max);
+        for is_rest in [false, true] {
+            for (group, scores) in kept.iter().zip(scores) {
+                let from = if is_rest { spread.least } else { most };
+                for lane in lanes_in(scores.simd_ge(f32x4::splat(from))) {
+                    let penetration = group.penetrations.to_array()[lane];
+                    let contact = Contact::of(tree, group.first + lane as u32, penetration);
+                    spread.consider(contact, scores.to_array()[lane]);
+                }
             }
         }
     }
@@ -327,22 +390,57 @@ impl<const N: usize> Goal for Spread<'_, N> {
 
     #[inline(always)]
     fn offer(&mut self, found: &Found<'_>) -> bool {
-        found.each().for_each(|contact| self.consider(contact));
+        let scores = self.polygon.scores(found.positions, found.penetrations);
+        for lane in lanes_in(found.counts & scores.simd_ge(f32x4::splat(self.least))) {
+            self.consider(found.contact(lane), scores.to_array()[lane]);
+        }
         true
     }
 }
 
 impl<const N: usize> Spread<'_, N> {
-    fn consider(&mut self, contact: Contact) {
-        if let Some(score) = self.polygon.score(&contact) {
-            let is_first = |best: &Contact| {
-                score > self.least || score == self.least && contact.point < best.point
-            };
-            if self.found.as_ref().is_none_or(is_first) {
-                self.least = score;
-                self.found = Some(contact);
-            }
+    /// Takes a contact if it is better than what was found; `score` is without its normal.
+    fn consider(&mut self, contact: Contact, score: f32) {
+        let score = score * self.polygon.facing(contact.normal);
+        let is_better = match &self.found {
+            Some(best) => score > self.least || score == self.least && contact.point < best.point,
+            None => score >= self.least,
+        };
+        if is_better && !self.polygon.has_corner(contact.position) {
+            self.least = score;
+            self.found = Some(contact);
         }
+    }
+}
+
+/// Any contact that is off the plane through the deepest.
+struct Bent<'p, const N: usize> {
+    polygon: &'p Polygon<N>,
+    found: bool,
+}
+
+impl<'p, const N: usize> Bent<'p, N> {
+    fn new(polygon: &'p Polygon<N>) -> Self {
+        Self {
+            polygon,
+            found: false,
+        }
+    }
+}
+
+impl<const N: usize> Goal for Bent<'_, N> {
+    const BEST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn least_penetration(&self) -> f32 {
+        self.polygon.least
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, found: &Found<'_>) -> bool {
+        let bent = self.polygon.bent(found.positions, found.penetrations);
+        self.found = (found.counts & bent).any();
+        !self.found
     }
 }
 
@@ -350,27 +448,41 @@ impl<const N: usize> Spread<'_, N> {
 struct Polygon<const N: usize> {
     /// Corners in order, counter-clockwise, which is not the order of picking.
     corners: [Vec3; N],
-    /// For each corner the outward direction in the plane of the polygon from the edge to the next
-    /// one, as long as that edge.
-    outward: [Vec3; N],
-    /// And how long that is, in metres.
-    edge: [f32; N],
+    /// For each corner the edge to the next one.
+    edges: [Edge; N],
     len: usize,
     along: Vec3,
+    /// The penetration at the first corner.
+    deepest: f32,
     /// How far outside of the solid a contact counts half, in metres.
     half: f32,
     /// From which penetration on contacts count enough.
     least: f32,
 }
 
+/// An edge of a polygon.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// The outward direction in the plane of the polygon, as long as the edge.
+    outward: Vec3,
+    /// How far that way the edge is from the first corner, in square metres.
+    offset: f32,
+    /// In metres.
+    length: f32,
+}
+
 impl<const N: usize> Polygon<N> {
     fn new(first: &Contact, along: Vec3, margin: f32) -> Self {
         Self {
             corners: [first.position; N],
-            outward: [Vec3::ZERO; N],
-            edge: [0.0; N],
+            edges: [Edge {
+                outward: Vec3::ZERO,
+                offset: 0.0,
+                length: 0.0,
+            }; N],
             len: 1,
             along,
+            deepest: first.penetration,
             half: half_weight(margin),
             least: least_deep(first.penetration, margin, LEAST_WEIGHT),
         }
@@ -378,14 +490,29 @@ impl<const N: usize> Polygon<N> {
 
     /// What a contact adds, weighted; `None` if nothing.
     fn score(&self, contact: &Contact) -> Option<f32> {
-        // Rounding makes area of nothing.
-        if self.corners[..self.len].contains(&contact.position) {
+        if self.has_corner(contact.position) {
             return None;
         }
         let position = Vectors::splat(contact.position);
         let penetration = f32x4::splat(contact.penetration);
         let score = self.scores(position, penetration).to_array()[0];
         (score > 0.0).then_some(score * self.facing(contact.normal))
+    }
+
+    /// Which of the contacts that count are off the plane through the first corner, further than
+    /// what is flat makes of it.
+    #[inline(always)]
+    fn bent(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
+        let way = positions.minus(Vectors::splat(self.corners[0]));
+        let in_plane = way.dot(Vectors::splat(self.along)) + f32x4::splat(self.deepest);
+        let off = (penetrations - in_plane).abs() - f32x4::splat(self.half);
+        let counts = penetrations.simd_ge(f32x4::splat(self.least));
+        counts & off.simd_gt(way.length() * f32x4::splat(BENT))
+    }
+
+    /// Rounding would make area of nothing for those.
+    fn has_corner(&self, position: Vec3) -> bool {
+        self.corners[..self.len].contains(&position)
     }
 
     /// How much a contact counts by its normal, up to one: less where the shell bends away.
@@ -425,44 +552,56 @@ impl<const N: usize> Polygon<N> {
     /// for a single corner).
     #[inline(always)]
     fn gains(&self, points: Vectors, more: impl Fn(f32) -> f32x4) -> f32x4 {
+        let from_first = points.minus(Vectors::splat(self.corners[0]));
         if self.len == 1 {
-            return points.minus(Vectors::splat(self.corners[0])).length() + more(1.0);
+            return from_first.length() + more(1.0);
         }
         let mut most = f32x4::ZERO;
-        for edge in 0..self.len {
-            let gain = self.beyond(edge, points) + more(self.edge[edge]);
-            most = most.fast_max(gain);
+        for edge in &self.edges[..self.len] {
+            most = most.fast_max(edge.beyond(from_first) + more(edge.length));
         }
         most
     }
 
-    /// Twice the area of the triangles over an edge, positive outside of the polygon.
-    #[inline(always)]
-    fn beyond(&self, edge: usize, points: Vectors) -> f32x4 {
-        let from_corner = points.minus(Vectors::splat(self.corners[edge]));
-        from_corner.dot(Vectors::splat(self.outward[edge]))
-    }
-
     /// Puts a corner in behind the edge it adds the most to.
     fn insert(&mut self, point: Vec3) {
-        let beyond = |edge: usize| self.beyond(edge, Vectors::splat(point)).to_array()[0];
-        let better = |best: usize, edge: usize| {
-            if beyond(edge) > beyond(best) {
-                edge
-            } else {
-                best
+        let from_first = Vectors::splat(point - self.corners[0]);
+        let (mut behind, mut most) = (0, f32::NEG_INFINITY);
+        for (i, edge) in self.edges[..self.len].iter().enumerate() {
+            let gain = edge.beyond(from_first).to_array()[0];
+            if gain > most {
+                (behind, most) = (i, gain);
             }
-        };
-        let edge = (0..self.len).fold(0, better);
-        self.corners.copy_within(edge + 1..self.len, edge + 2);
-        self.corners[edge + 1] = point;
-        self.len += 1;
-        for edge in 0..self.len {
-            // With two corners there is an edge each way.
-            let to_next = self.corners[(edge + 1) % self.len] - self.corners[edge];
-            self.outward[edge] = to_next.cross(self.along);
-            self.edge[edge] = self.outward[edge].length();
         }
+        self.corners.copy_within(behind + 1..self.len, behind + 2);
+        self.edges.copy_within(behind + 1..self.len, behind + 2);
+        self.corners[behind + 1] = point;
+        self.len += 1;
+        // With two corners there is an edge each way.
+        for i in [behind, behind + 1] {
+            self.edges[i] = self.edge(i);
+        }
+    }
+
+    /// The edge from a corner to the next one.
+    fn edge(&self, corner: usize) -> Edge {
+        let from = self.corners[corner];
+        let to_next = self.corners[(corner + 1) % self.len] - from;
+        let outward = to_next.cross(self.along);
+        Edge {
+            outward,
+            offset: outward.dot(from - self.corners[0]),
+            length: outward.length(),
+        }
+    }
+}
+
+impl Edge {
+    /// Twice the area of the triangles over the edge, positive outside of the polygon; of points
+    /// seen from the first corner.
+    #[inline(always)]
+    fn beyond(&self, from_first: Vectors) -> f32x4 {
+        from_first.dot(Vectors::splat(self.outward)) - f32x4::splat(self.offset)
     }
 }
 
@@ -533,6 +672,29 @@ mod tests {
         contacts.push(contact(3, 0.0, 0.001, 0.0));
         assert_eq!(picked::<2>(&contacts), [0, 3]);
         assert_eq!(picked::<3>(&contacts), [0, 3, 2]);
+    }
+
+    #[test]
+    fn four_are_enough_on_what_is_flat() {
+        let ground: Vec<_> = (0..100)
+            .map(|i| contact(i, (i % 10) as f32, (i / 10) as f32, 0.01))
+            .collect();
+        assert_eq!(picked::<8>(&ground).len(), 4);
+        // A slope is flat as well: penetration grows upwards.
+        let slope = ground.iter().map(|c| Contact {
+            position: c.position.with_y(0.1 * c.position.x),
+            penetration: 0.01 + 0.1 * c.position.x,
+            ..*c
+        });
+        assert_eq!(picked::<8>(&slope.collect::<Vec<_>>()).len(), 4);
+        // A wall is not: there penetration stays the same upwards.
+        let wall = (0..100).map(|i| Contact {
+            position: Vec3::new(-1.0, (i % 10) as f32, (i / 10) as f32),
+            ..contact(100 + i, 0.0, 0.0, 0.01)
+        });
+        let both: Vec<_> = ground.iter().copied().chain(wall).collect();
+        assert!(picked::<8>(&both).len() > 4);
+        assert_eq!(picked::<4>(&both).len(), 4);
     }
 
     #[test]

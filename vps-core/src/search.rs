@@ -293,10 +293,15 @@ impl Found<'_> {
     /// Those of the given lanes.
     #[inline(always)]
     pub(crate) fn each_in(&self, lanes: f32x4) -> impl Iterator<Item = Contact> {
-        let penetrations = self.penetrations.to_array();
         lanes_in(lanes).map(
             #[inline(always)]
-            move |lane| Contact::of(self.tree, self.first + lane as u32, penetrations[lane]),
+            |lane| self.contact(lane),
         )
+    }
+
+    #[inline(always)]
+    pub(crate) fn contact(&self, lane: usize) -> Contact {
+        let penetration = self.penetrations.to_array()[lane];
+        Contact::of(self.tree, self.first + lane as u32, penetration)
     }
 }

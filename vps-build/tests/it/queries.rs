@@ -120,7 +120,7 @@ fn check_query<F: DistanceField + ?Sized>(
         let at = rotation * deepest.position + pose.translation;
         let inward = rotation.transpose() * field.inward_direction(at);
         let along = if inward == Vec3::ZERO {
-            deepest.normal
+            -deepest.normal
         } else {
             inward
         };
