@@ -256,12 +256,14 @@ fn ground(
     let mut runs = algorithms.map(|(name, label, prepared)| {
         let poses = &poses;
         // As an engine keeps them, for bodies that go on from pose to pose.
-        let mut contacts = Contacts::default();
         let run = move || {
-            for pose in poses {
-                prepared
-                    .query(pose, PREDICTION, &mut contacts)
-                    .expect("a pair of shapes it knows");
+            for steps in poses.chunks(5) {
+                let mut contacts = Contacts::default();
+                for pose in steps {
+                    prepared
+                        .query(pose, PREDICTION, &mut contacts)
+                        .expect("a pair of shapes it knows");
+                }
             }
         };
         (name, label, run)

@@ -8,7 +8,8 @@ use crate::search::{Found, Goal};
 use crate::work::CountWork;
 use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
 
-/// At which fraction of the margin outside of the solid a contact counts half.
+/// At which fraction of the margin further outside than the deepest a contact counts half, if the
+/// shell hardly moves.
 const CLOSE: f32 = 0.01;
 
 /// Contacts that count less than this part of what the deepest does are picked only when no others
@@ -31,14 +32,18 @@ const ASKEW: f32 = 0.25;
 /// At most `N` contacts that stand for a contact set: the deepest one first, then those that
 /// spread the manifold over the largest area (section 3.2).
 ///
-/// What a point adds to the area counts less the further outside of the solid it is, half at a
-/// hundredth of the margin: the points a body stands on come before those that lie further apart
-/// above the ground, without which it would sink and rise and never rest. Those that count less
-/// than half of what the deepest does only fill up what places the others leave, up to four: a body
-/// may fall on them next. More than four are picked only where the field is bent, that is where the
-/// penetrations of those that count enough are not those in a half-space: four hold a body on
-/// what is flat, but not in a thread. And it counts less the more its normal is askew, down to a quarter: points
-/// a little inside of an edge come before those on it, whose normals belong to neither side. Of
+/// What a point adds to the area counts less the further outside of the solid it is than the
+/// deepest, half at a hundredth of the margin: the points a body stands on come before those that
+/// lie further apart above the ground, without which it would sink and rise and never rest. Of a
+/// body that moves, other points touch the ground in the next step: then contacts count half that
+/// are as far away as it has come ([`Query::with_motion`]). Those that count less than half of what
+/// the deepest does only fill up what places the others leave, up to four: a body may fall on them
+/// next.
+///
+/// More than four are picked only where the field is bent, that is where the penetrations of those
+/// that count enough are not those in a half-space: four hold a body on what is flat, but not in a
+/// thread. And a contact counts less the more its normal is askew, down to a quarter: points a
+/// little inside of an edge come before those on it, whose normals belong to neither side. Of
 /// equally good contacts the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
@@ -57,20 +62,21 @@ impl<const N: usize> ContactManifold<N> {
         len: 0,
     };
 
-    /// Picks from `contacts`, found by a query with `margin` metres. The area is that of the polygon
+    /// Picks from `contacts`, found by a query with `margin` metres and a `motion`. The area is that of the polygon
     /// of the picked points seen `along` a unit vector in the shell frame, the direction in which
     /// penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`] gives the same without a list of all contacts.
-    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32) -> Self {
+    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32, motion: Option<f32>) -> Self {
+        let closeness = Closeness { margin, motion };
         let deepest = best(contacts, |c| Some(c.penetration));
-        Self::pick(deepest, |_| along, margin, &mut Listed(contacts))
+        Self::pick(deepest, |_| along, closeness, &mut Listed(contacts))
     }
 
     fn pick(
         deepest: Option<Contact>,
         along: impl FnOnce(&Contact) -> Vec3,
-        margin: f32,
+        closeness: Closeness,
         source: &mut impl Source<N>,
     ) -> Self {
         let mut manifold = Self::EMPTY;
@@ -80,14 +86,14 @@ impl<const N: usize> ContactManifold<N> {
         let Some(deepest) = deepest else {
             return manifold;
         };
-        let mut polygon = Polygon::new(&deepest, along(&deepest), margin);
+        let mut polygon = Polygon::new(&deepest, along(&deepest), closeness);
         manifold.push(deepest);
         let mut most = N.min(STANDS_ON);
         let mut is_filled_up = false;
         while manifold.len < most {
             let mut picked = source.best(&polygon);
             if picked.is_none() && manifold.len < STANDS_ON && !is_filled_up {
-                (polygon.least, is_filled_up) = (-margin, true);
+                (polygon.least, is_filled_up) = (-closeness.margin, true);
                 picked = source.best(&polygon);
             }
             let Some(next) = picked else {
@@ -156,7 +162,11 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         if !self.may_touch() {
             return ContactManifold::EMPTY;
         }
-        let mut near = Near::new(self.margin);
+        let closeness = Closeness {
+            margin: self.margin,
+            motion: self.motion,
+        };
+        let mut near = Near::new(closeness);
         self.find_from_hint(&mut near);
         near.drop_shallow();
         let deepest = near.deepest.found;
@@ -170,7 +180,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             }
         };
         let mut source = Searched { query: self, near };
-        ContactManifold::pick(deepest, along, self.margin, &mut source)
+        ContactManifold::pick(deepest, along, closeness, &mut source)
     }
 }
 
@@ -231,7 +241,7 @@ struct Group {
 
 /// The deepest contact, and those that count enough.
 struct Near {
-    margin: f32,
+    closeness: Closeness,
     /// Contacts less deep are not kept.
     least: f32,
     deepest: Deepest,
@@ -243,16 +253,16 @@ struct Near {
 }
 
 impl Near {
-    fn new(margin: f32) -> Self {
+    fn new(closeness: Closeness) -> Self {
         let none = Group {
             first: 0,
             positions: Vectors::splat(Vec3::ZERO),
             penetrations: f32x4::ZERO,
         };
         Self {
-            margin,
-            least: -margin,
-            deepest: Deepest::new(margin),
+            closeness,
+            least: -closeness.margin,
+            deepest: Deepest::new(closeness.margin),
             kept: [none; KEPT],
             len: 0,
             is_full: false,
@@ -300,7 +310,7 @@ impl Near {
 
     /// Forgets what was kept, to be offered all contacts again, also those that count a little.
     fn reach_down(&mut self) {
-        self.least = least_deep(self.deepest.least, self.margin, KEPT_WEIGHT);
+        self.least = self.closeness.least_deep(self.deepest.least, KEPT_WEIGHT);
         (self.len, self.has_reached) = (0, true);
     }
 
@@ -333,7 +343,7 @@ impl Goal for Near {
             self.least = if self.is_full {
                 self.deepest.least
             } else {
-                least_deep(self.deepest.least, self.margin, LEAST_WEIGHT)
+                self.closeness.least_deep(self.deepest.least, LEAST_WEIGHT)
             };
         }
         if !self.is_full {
@@ -348,16 +358,36 @@ impl Goal for Near {
     }
 }
 
-/// From which penetration on contacts count at least a part of what the deepest does.
-fn least_deep(deepest: f32, margin: f32, part: f32) -> f32 {
-    let (outside, half) = ((-deepest).max(0.0), half_weight(margin));
-    let square = (outside * outside + half * half) / part - half * half;
-    -f32x4::splat(square).sqrt().to_array()[0].min(margin)
+/// How contacts outside of the solid count.
+#[derive(Clone, Copy)]
+struct Closeness {
+    margin: f32,
+    motion: Option<f32>,
 }
 
-/// How far outside of the solid a contact counts half, in metres.
-fn half_weight(margin: f32) -> f32 {
-    (margin * CLOSE).max(f32::MIN_POSITIVE)
+impl Closeness {
+    /// How much further outside than the deepest one a contact counts half, in metres.
+    fn half(&self, deepest: f32) -> f32 {
+        let close = (self.margin * CLOSE).max(f32::MIN_POSITIVE);
+        let next = match self.motion {
+            Some(motion) => motion,
+            // It came from further away than the margin.
+            None => outside(deepest),
+        };
+        next.min(self.margin).max(close)
+    }
+
+    /// From which penetration on contacts count at least a part of what the deepest does.
+    fn least_deep(&self, deepest: f32, part: f32) -> f32 {
+        let half = self.half(deepest);
+        let further = f32x4::splat(half * half * (1.0 / part - 1.0)).sqrt();
+        -(outside(deepest) + further.to_array()[0]).min(self.margin)
+    }
+}
+
+/// How far outside of the solid something is, in metres.
+fn outside(penetration: f32) -> f32 {
+    (-penetration).max(0.0)
 }
 
 /// The contact that adds the most to a polygon.
@@ -452,9 +482,10 @@ struct Polygon<const N: usize> {
     edges: [Edge; N],
     len: usize,
     along: Vec3,
-    /// The penetration at the first corner.
+    /// The penetration at the first corner, and how far outside of the solid that is, in metres.
     deepest: f32,
-    /// How far outside of the solid a contact counts half, in metres.
+    outside: f32,
+    /// How much further outside a contact counts half, in metres.
     half: f32,
     /// From which penetration on contacts count enough.
     least: f32,
@@ -472,7 +503,7 @@ struct Edge {
 }
 
 impl<const N: usize> Polygon<N> {
-    fn new(first: &Contact, along: Vec3, margin: f32) -> Self {
+    fn new(first: &Contact, along: Vec3, closeness: Closeness) -> Self {
         Self {
             corners: [first.position; N],
             edges: [Edge {
@@ -483,8 +514,9 @@ impl<const N: usize> Polygon<N> {
             len: 1,
             along,
             deepest: first.penetration,
-            half: half_weight(margin),
-            least: least_deep(first.penetration, margin, LEAST_WEIGHT),
+            outside: outside(first.penetration),
+            half: closeness.half(first.penetration),
+            least: closeness.least_deep(first.penetration, LEAST_WEIGHT),
         }
     }
 
@@ -541,8 +573,9 @@ impl<const N: usize> Polygon<N> {
 
     #[inline(always)]
     fn weights(&self, penetrations: f32x4) -> f32x4 {
-        let outside = (-penetrations).fast_max(f32x4::ZERO) / self.half;
-        let weights = f32x4::ONE / (outside * outside + 1.0);
+        let outside = -penetrations - f32x4::splat(self.outside);
+        let further = outside.fast_max(f32x4::ZERO) / self.half;
+        let weights = f32x4::ONE / (further * further + 1.0);
         let counts = penetrations.simd_ge(f32x4::splat(self.least));
         counts & weights
     }
@@ -634,7 +667,7 @@ mod tests {
     }
 
     fn picked<const N: usize>(contacts: &[Contact]) -> Vec<u32> {
-        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1);
+        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1, Some(0.0));
         manifold.contacts().iter().map(|c| c.point).collect()
     }
 
@@ -672,6 +705,29 @@ mod tests {
         contacts.push(contact(3, 0.0, 0.001, 0.0));
         assert_eq!(picked::<2>(&contacts), [0, 3]);
         assert_eq!(picked::<3>(&contacts), [0, 3, 2]);
+    }
+
+    #[test]
+    fn what_moves_touches_the_next_point_soon() {
+        let mut contacts = [
+            contact(0, 0.0, 0.0, 0.01),
+            contact(1, 4.0, 0.0, 0.0),
+            contact(2, 8.0, 0.0, -0.01),
+        ];
+        let second = |contacts: &[Contact], motion| {
+            let manifold = ContactManifold::<2>::spread(contacts, Vec3::Y, 0.1, motion);
+            manifold.contacts()[1].point
+        };
+        assert_eq!(
+            [0.0, 0.01, 0.1].map(|m| second(&contacts, Some(m))),
+            [1, 1, 2]
+        );
+        // What touches already may have been put there.
+        assert_eq!(second(&contacts, None), 1);
+        for contact in &mut contacts {
+            contact.penetration -= 0.04;
+        }
+        assert_eq!(second(&contacts, None), 2);
     }
 
     #[test]

@@ -58,6 +58,7 @@ pub struct Query<'q, F: ?Sized, W = ()> {
     /// Whether the pose is finite.
     pub(crate) is_posed: bool,
     pub(crate) margin: f32,
+    pub(crate) motion: Option<f32>,
     /// A point to begin with.
     pub(crate) hint: Option<u32>,
     /// A ball and the points in it are moved by rounding, each on its own.
@@ -85,6 +86,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             translation,
             is_posed: shell_to_field.is_finite(),
             margin: 0.0,
+            motion: Some(0.0),
             hint: None,
             ball_slack: 16.0 * f32::EPSILON * reach,
             work: (),
@@ -100,6 +102,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             translation: self.translation,
             is_posed: self.is_posed,
             margin: self.margin,
+            motion: self.motion,
             hint: self.hint,
             ball_slack: self.ball_slack,
             work,
@@ -111,6 +114,13 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Also gives the points that are up to `margin` metres away from the solid.
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
+    }
+
+    /// Tells [`manifold`](Self::manifold) how far the shell has come, towards the solid or away, since
+    /// the query before, in metres; 0 without it. `None` if it was further away than the margin: then
+    /// it is taken to go as far again as its deepest point is away.
+    pub fn with_motion(self, motion: Option<f32>) -> Self {
+        Self { motion, ..self }
     }
 
     /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and

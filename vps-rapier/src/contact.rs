@@ -58,8 +58,13 @@ impl PairContact {
 }
 
 /// Keeps at most `N`: the deepest first, then those that spread over the largest area, seen along
-/// the normal of the deepest (section 3.2).
-pub(crate) fn spread<const N: usize>(contacts: &mut Vec<PairContact>, margin: f32) {
+/// the normal of the deepest (section 3.2); `margin` is how far ahead they were
+/// looked for, and `motion` that of [`vps_core::Query::with_motion`].
+pub(crate) fn spread<const N: usize>(
+    contacts: &mut Vec<PairContact>,
+    margin: f32,
+    motion: Option<f32>,
+) {
     if contacts.len() <= 1 {
         return;
     }
@@ -77,7 +82,7 @@ pub(crate) fn spread<const N: usize>(contacts: &mut Vec<PairContact>, margin: f3
     let Some(deepest) = numbered.iter().copied().max_by(deeper) else {
         return;
     };
-    let picked = ContactManifold::<N>::spread(&numbered, deepest.normal, margin);
+    let picked = ContactManifold::<N>::spread(&numbered, deepest.normal, margin, motion);
     let picked = picked.contacts().iter();
     *contacts = picked.map(|c| contacts[c.point as usize]).collect();
 }

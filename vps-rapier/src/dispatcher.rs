@@ -17,7 +17,7 @@ use rapier3d::parry::shape::{Compound, Shape};
 use crate::cast::{Linear, Turning, cast};
 use crate::compound::{compound_of_vps, update_parts};
 use crate::contact::PairContact;
-use crate::manifolds::update_manifolds;
+use crate::manifolds::{normals, update_manifolds};
 use crate::pair::Pair;
 use crate::real::{core_pose, core_real, real, vector};
 use crate::workspace::Workspace;
@@ -256,8 +256,12 @@ where
             Task::Pair(pair) => {
                 let prediction = core_real(prediction);
                 let pose = core_pose(pos12);
-                update_manifolds(&pair, &pose, prediction, self.manifolds, manifolds);
-                Workspace::default().put(workspace);
+                let mut ours = Workspace::take(workspace);
+                let before = ours.pos12.replace(pose);
+                let normals = manifolds.first().map(normals);
+                let motion = pair.motion(&pose, before.as_ref(), normals);
+                update_manifolds(&pair, &pose, prediction, motion, self.manifolds, manifolds);
+                ours.put(workspace);
             }
             Task::PartsOfFirst(_) | Task::PartsOfSecond(_) => {
                 let all = self.chain(DefaultQueryDispatcher);

@@ -8,19 +8,21 @@ use crate::contact::{PairContact, is_same_normal};
 use crate::pair::Pair;
 use crate::real::{core_vector, real, vector};
 
-/// Finds the contacts of a pair up to `prediction` metres away and replaces its manifolds by them.
+/// Finds the contacts of a pair up to `margin` metres away and replaces its manifolds by them;
+/// `motion` is how far the shapes moved against each other since the step before.
 /// What the engine remembers of a contact stays with the same ids, and of a manifold with its place.
 pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     pair: &Pair<'_>,
     pos12: &Pose3,
-    prediction: f32,
+    margin: f32,
+    motion: Option<f32>,
     kind: Manifolds,
     manifolds: &mut Vec<ContactManifold<M, C>>,
 ) {
     let mut old = std::mem::take(manifolds);
     let before = old.iter().flat_map(|m| &m.points);
     let before: Vec<_> = before.map(|c| [c.fid1, c.fid2]).collect();
-    let contacts = pair.contacts(pos12, prediction, kind, &before);
+    let contacts = pair.contacts(pos12, margin, motion, kind, &before);
     let remembered = remembered(&contacts, &old);
     for (contact, data) in contacts.iter().zip(remembered) {
         let tracked = tracked(contact, data);
@@ -41,6 +43,11 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
         manifold.points.push(tracked);
         manifolds.push(manifold);
     }
+}
+
+/// The normals out of both shapes, each in its frame.
+pub(crate) fn normals<M, C>(manifold: &ContactManifold<M, C>) -> [Vec3; 2] {
+    [manifold.local_n1, manifold.local_n2].map(core_vector)
 }
 
 fn fits<M, C>(manifold: &ContactManifold<M, C>, normal: Vec3) -> bool {

@@ -117,19 +117,34 @@ impl<'s> Pair<'s> {
         deepest.reduce(deeper)
     }
 
+    /// How far the shapes moved towards each other or apart since the step before, in metres, if
+    /// those were the normals of their contacts; `None` if they were too far apart for an engine to
+    /// ask.
+    pub(crate) fn motion(
+        &self,
+        pos12: &Pose3,
+        before: Option<&Pose3>,
+        normals: Option<[Vec3; 2]>,
+    ) -> Option<f32> {
+        let before = before?;
+        let motion = |way: &Way<'_>| way.motion([before, pos12], normals);
+        Some(self.ways().map(motion).fold(0.0, f32::max))
+    }
+
     /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of those of
-    /// the step before.
+    /// the step before, and `motion` is how far the shapes moved since.
     pub(crate) fn contacts(
         &self,
         pos12: &Pose3,
         margin: f32,
+        motion: Option<f32>,
         manifolds: Manifolds,
         before: &[[PackedFeatureId; 2]],
     ) -> Vec<PairContact> {
         let mut found = Vec::new();
         for way in self.ways() {
             match manifolds {
-                Manifolds::Spread => way.manifold(pos12, margin, before, &mut found),
+                Manifolds::Spread => way.manifold(pos12, margin, motion, before, &mut found),
                 Manifolds::Segments(level) => way.segments(pos12, margin, level, &mut found),
             }
         }
@@ -142,7 +157,7 @@ impl<'s> Pair<'s> {
             Manifolds::Spread => {
                 let mut kept = self.again(pos12, before, &found);
                 if has_more {
-                    spread::<SPREAD_SIZE>(&mut found, margin);
+                    spread::<SPREAD_SIZE>(&mut found, margin, motion);
                 }
                 for contacts in kept.iter_mut().chain([&mut found]) {
                     settle_normals(contacts, pos12);
@@ -157,7 +172,7 @@ impl<'s> Pair<'s> {
             }
             Manifolds::Segments(_) if found.len() > by_shells => {
                 let mut probed = found.split_off(by_shells);
-                spread::<SPREAD_SIZE>(&mut probed, margin);
+                spread::<SPREAD_SIZE>(&mut probed, margin, motion);
                 found.extend(probed);
             }
             _ => {}

@@ -139,6 +139,7 @@ impl<'s> Way<'s> {
         &self,
         pos12: &Pose3,
         margin: f32,
+        motion: Option<f32>,
         before: &[[PackedFeatureId; 2]],
         found: &mut Vec<PairContact>,
     ) {
@@ -151,7 +152,7 @@ impl<'s> Way<'s> {
             }
         });
         let manifold: ContactManifold<SPREAD_SIZE> = with_field!(self, field => {
-            let query = Query::new(self.tree, field, pose).with_margin(margin);
+            let query = Query::new(self.tree, field, pose).with_margin(margin).with_motion(motion);
             hint.map_or(query, |point| query.with_hint(point)).manifold()
         });
         let contacts = manifold.contacts().iter();
@@ -212,6 +213,18 @@ impl<'s> Way<'s> {
             on_shell
         } else {
             -(pose.rotation * on_shell)
+        }
+    }
+
+    /// How far the middle of the shell came from one pose to another, along the normals of the two
+    /// shapes if they are known: what rolls or slides goes aside.
+    pub(crate) fn motion(&self, poses: [&Pose3; 2], normals: Option<[Vec3; 2]>) -> f32 {
+        let middle = self.tree.bounds().center();
+        let [from, to] = poses.map(|pose| self.shell_to_field(pose).transform_point(middle));
+        let of_field = if self.shell_is_first { 1 } else { 0 };
+        match normals {
+            Some(normals) => (to - from).dot(normals[of_field]).abs(),
+            None => to.distance(from),
         }
     }
 

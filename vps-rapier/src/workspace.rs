@@ -1,10 +1,13 @@
 //! What a pair keeps from step to step.
 
 use rapier3d::parry::query::{ContactManifoldsWorkspace, TypedWorkspaceData, WorkspaceData};
+use vps_core::Pose3;
 
 /// Tells rapier by its presence that the manifolds of the pair may change their order.
 #[derive(Clone, Default)]
 pub(crate) struct Workspace {
+    /// The pose of the second shape in the frame of the first.
+    pub(crate) pos12: Option<Pose3>,
     /// What pairs of parts of compounds keep by themselves.
     pub(crate) parts: Vec<([u32; 2], Option<ContactManifoldsWorkspace>)>,
 }

@@ -124,8 +124,11 @@ fn check_query<F: DistanceField + ?Sized>(
         } else {
             inward
         };
-        let listed = ContactManifold::<5>::spread(&flat, along, margin);
-        prop_assert_eq!(manifold, listed);
+        for motion in [Some(0.0), Some(0.3 * margin), None] {
+            let listed = ContactManifold::<5>::spread(&flat, along, margin, motion);
+            let searched = query.with_motion(motion).manifold::<5>();
+            prop_assert_eq!(searched, listed);
+        }
     } else {
         prop_assert!(manifold.contacts().is_empty());
     }
