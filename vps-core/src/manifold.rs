@@ -62,9 +62,9 @@ impl<const N: usize> ContactManifold<N> {
         len: 0,
     };
 
-    /// Picks from `contacts`, found by a query with `margin` metres and a `motion`. The area is that of the polygon
-    /// of the picked points seen `along` a unit vector in the shell frame, the direction in which
-    /// penetration grows at the deepest point. Costs `N` passes.
+    /// Picks from `contacts`, found by a query with `margin` metres and a `motion`. The area is that
+    /// of the polygon of the picked points seen `along` a unit vector in the shell frame, the
+    /// direction in which penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`] gives the same without a list of all contacts.
     pub fn spread(contacts: &[Contact], along: Vec3, margin: f32, motion: Option<f32>) -> Self {
@@ -366,15 +366,19 @@ struct Closeness {
 }
 
 impl Closeness {
+    /// What is no distance to speak of, in metres.
+    fn close(&self) -> f32 {
+        (self.margin * CLOSE).max(f32::MIN_POSITIVE)
+    }
+
     /// How much further outside than the deepest one a contact counts half, in metres.
     fn half(&self, deepest: f32) -> f32 {
-        let close = (self.margin * CLOSE).max(f32::MIN_POSITIVE);
         let next = match self.motion {
             Some(motion) => motion,
             // It came from further away than the margin.
             None => outside(deepest),
         };
-        next.min(self.margin).max(close)
+        next.min(self.margin).max(self.close())
     }
 
     /// From which penetration on contacts count at least a part of what the deepest does.
@@ -485,6 +489,8 @@ struct Polygon<const N: usize> {
     /// The penetration at the first corner, and how far outside of the solid that is, in metres.
     deepest: f32,
     outside: f32,
+    /// What is no distance to speak of, in metres.
+    close: f32,
     /// How much further outside a contact counts half, in metres.
     half: f32,
     /// From which penetration on contacts count enough.
@@ -515,6 +521,7 @@ impl<const N: usize> Polygon<N> {
             along,
             deepest: first.penetration,
             outside: outside(first.penetration),
+            close: closeness.close(),
             half: closeness.half(first.penetration),
             least: closeness.least_deep(first.penetration, LEAST_WEIGHT),
         }
@@ -537,7 +544,7 @@ impl<const N: usize> Polygon<N> {
     fn bent(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
         let way = positions.minus(Vectors::splat(self.corners[0]));
         let in_plane = way.dot(Vectors::splat(self.along)) + f32x4::splat(self.deepest);
-        let off = (penetrations - in_plane).abs() - f32x4::splat(self.half);
+        let off = (penetrations - in_plane).abs() - f32x4::splat(self.close);
         let counts = penetrations.simd_ge(f32x4::splat(self.least));
         counts & off.simd_gt(way.length() * f32x4::splat(BENT))
     }
