@@ -149,8 +149,10 @@ pub(crate) fn write(
         }
         sections.push(results.section(file, algorithms, &folder)?);
     }
-    write_atomically(&out.join(MARKDOWN), markdown::report(&sections).as_bytes())?;
-    let html = html::report(&sections, out)?;
+    let others = others(records)?;
+    let text = markdown::report(&sections, &others);
+    write_atomically(&out.join(MARKDOWN), text.as_bytes())?;
+    let html = html::report(&sections, &others, out)?;
     write_atomically(&out.join(HTML), html.as_bytes())?;
     let first_table = |section: &Section| {
         let table = section.blocks.iter().find_map(|block| match block {
@@ -160,6 +162,34 @@ pub(crate) fn write(
         (section.name.clone(), table.unwrap_or_default())
     };
     Ok(sections.iter().map(first_table).collect())
+}
+
+/// A report that something else made, in a folder beside those of the experiments.
+struct Other {
+    title: String,
+    /// From the folder of the report.
+    file: String,
+}
+
+/// Heading of the list of those.
+const OTHERS: &str = "Measured by itself";
+
+/// All of them, by the names of their folders.
+fn others(records: &Path) -> Result<Vec<Other>, Error> {
+    let mut all = Vec::new();
+    for entry in std::fs::read_dir(records)? {
+        let file = format!("{}/README.md", entry?.file_name().to_string_lossy());
+        // What is no folder, and those of experiments, have none.
+        let Ok(text) = std::fs::read_to_string(records.join(&file)) else {
+            continue;
+        };
+        if let Some(title) = text.lines().find_map(|line| line.strip_prefix("# ")) {
+            let title = title.to_owned();
+            all.push(Other { title, file });
+        }
+    }
+    all.sort_by(|a, b| a.file.cmp(&b.file));
+    Ok(all)
 }
 
 /// Brings what a run drew, and a report only shows, to another folder.

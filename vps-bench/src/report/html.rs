@@ -5,15 +5,20 @@ use std::path::Path;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::{OTHERS, Other};
 use crate::claims::{Outcome, Verdict};
 use crate::experiments::Error;
 use crate::page::{Block, FigureLink, QUICK, Section, Table};
 
 const STYLE: &str = include_str!("report.css");
 
-/// All sections, with a table of verdicts first; figures are read from `folder`, where the report
-/// will lie.
-pub(super) fn report(sections: &[Section], folder: &Path) -> Result<String, Error> {
+/// All sections, with a table of verdicts first and a list of other reports last; figures are read
+/// from `folder`, where the report will lie.
+pub(super) fn report(
+    sections: &[Section],
+    others: &[Other],
+    folder: &Path,
+) -> Result<String, Error> {
     let mut parts = Vec::new();
     for section in sections {
         parts.push(self::section(section, folder)?);
@@ -46,6 +51,7 @@ pub(super) fn report(sections: &[Section], folder: &Path) -> Result<String, Erro
                         @for section in sections {
                             li { a href={ "#" (section.name) } { (section.title) } }
                         }
+                        @if !others.is_empty() { li { a href="#others" { (OTHERS) } } }
                     }
                 }
                 main {
@@ -56,6 +62,16 @@ pub(super) fn report(sections: &[Section], folder: &Path) -> Result<String, Erro
                         }
                     }
                     @for part in &parts { (part) }
+                    @if !others.is_empty() {
+                        section id="others" {
+                            h2 { (OTHERS) }
+                            ul {
+                                @for other in others {
+                                    li { a href=(other.file) { (other.title) } }
+                                }
+                            }
+                        }
+                    }
                 }
             }
         }

@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
+use super::{OTHERS, Other};
 use crate::claims::Verdict;
 use crate::page::{Block, QUICK, Section, Table};
 
-/// All sections, with a table of verdicts first.
-pub(super) fn report(sections: &[Section]) -> String {
+/// All sections, with a table of verdicts first and a list of other reports last.
+pub(super) fn report(sections: &[Section], others: &[Other]) -> String {
     let mut text = String::from("# Report\n");
     let all: Vec<_> = sections.iter().flat_map(|s| &s.verdicts).collect();
     if !all.is_empty() {
@@ -14,6 +15,12 @@ pub(super) fn report(sections: &[Section]) -> String {
     }
     for section in sections {
         let _ = write!(text, "\n{}", self::section(section));
+    }
+    if !others.is_empty() {
+        let _ = write!(text, "\n## {OTHERS}\n\n");
+    }
+    for other in others {
+        let _ = writeln!(text, "* [{}]({})", other.title, other.file);
     }
     text
 }
