@@ -101,7 +101,8 @@ impl<const N: usize> ContactManifold<N> {
             };
             polygon.insert(next.position);
             manifold.push(next);
-            if manifold.len == STANDS_ON && !is_filled_up && source.is_bent(&polygon) {
+            let may_go_on = manifold.len == STANDS_ON && STANDS_ON < N && !is_filled_up;
+            if may_go_on && source.is_bent(&polygon) {
                 most = N;
             }
         }
@@ -486,9 +487,8 @@ struct Polygon<const N: usize> {
     edges: [Edge; N],
     len: usize,
     along: Vec3,
-    /// The penetration at the first corner, and how far outside of the solid that is, in metres.
+    /// The penetration at the first corner, in metres.
     deepest: f32,
-    outside: f32,
     /// What is no distance to speak of, in metres.
     close: f32,
     /// How much further outside a contact counts half, in metres.
@@ -520,7 +520,6 @@ impl<const N: usize> Polygon<N> {
             len: 1,
             along,
             deepest: first.penetration,
-            outside: outside(first.penetration),
             close: closeness.close(),
             half: closeness.half(first.penetration),
             least: closeness.least_deep(first.penetration, LEAST_WEIGHT),
@@ -580,7 +579,7 @@ impl<const N: usize> Polygon<N> {
 
     #[inline(always)]
     fn weights(&self, penetrations: f32x4) -> f32x4 {
-        let outside = -penetrations - f32x4::splat(self.outside);
+        let outside = -penetrations - f32x4::splat(outside(self.deepest));
         let further = outside.fast_max(f32x4::ZERO) / self.half;
         let weights = f32x4::ONE / (further * further + 1.0);
         let counts = penetrations.simd_ge(f32x4::splat(self.least));
