@@ -6,7 +6,7 @@ use crate::lanes::{Vectors, lanes_in};
 use crate::query::{Deepest, TOP};
 use crate::search::{Found, Goal};
 use crate::work::CountWork;
-use crate::{Contact, Discs, DistanceField, PointSphereTree, Query};
+use crate::{Contact, Discs, DistanceField, LANES, PointSphereTree, Points, Query};
 
 /// At which fraction of the margin further outside than the deepest a contact counts half, if the
 /// shell hardly moves.
@@ -223,21 +223,35 @@ where
             return self.query.find(Bent::new(polygon)).found;
         }
         let mut kept = self.near.kept[..self.near.len].iter();
-        kept.any(|group| polygon.bent(group.positions, group.penetrations).any())
+        kept.any(|group| {
+            let positions = group.positions(self.query.tree);
+            polygon.bent(positions, group.penetrations()).any()
+        })
     }
 }
 
 /// How many groups of contacts are kept for the manifold, on the stack.
-const KEPT: usize = 96;
+const KEPT: usize = 256;
 
 /// Points that were tested together.
 #[derive(Clone, Copy)]
 struct Group {
     /// The first one's number.
     first: u32,
-    positions: Vectors,
     /// Minus infinity for those that do not count.
-    penetrations: f32x4,
+    penetrations: [f32; LANES],
+}
+
+impl Group {
+    #[inline(always)]
+    fn positions(&self, tree: &PointSphereTree<'_>) -> Vectors {
+        Points::read(tree.points(), self.first as usize).into()
+    }
+
+    #[inline(always)]
+    fn penetrations(&self) -> f32x4 {
+        f32x4::new(self.penetrations)
+    }
 }
 
 /// The deepest contact, and those that count enough.
@@ -257,8 +271,7 @@ impl Near {
     fn new(closeness: Closeness) -> Self {
         let none = Group {
             first: 0,
-            positions: Vectors::splat(Vec3::ZERO),
-            penetrations: f32x4::ZERO,
+            penetrations: [f32::NEG_INFINITY; LANES],
         };
         Self {
             closeness,
@@ -279,7 +292,9 @@ impl Near {
         let mut scores = [f32x4::ZERO; KEPT];
         let mut most = f32x4::splat(spread.least);
         for (group, scores) in kept.iter().zip(&mut scores) {
-            *scores = spread.polygon.scores(group.positions, group.penetrations);
+            *scores = spread
+                .polygon
+                .scores(group.positions(tree), group.penetrations());
             most = most.fast_max(*scores);
         }
         let most = most.to_array().into_iter().fold(spread.least, f32::max);
@@ -287,7 +302,7 @@ impl Near {
             for (group, scores) in kept.iter().zip(scores) {
                 let from = if is_rest { spread.least } else { most };
                 for lane in lanes_in(scores.simd_ge(f32x4::splat(from))) {
-                    let penetration = group.penetrations.to_array()[lane];
+                    let penetration = group.penetrations[lane];
                     let contact = Contact::of(tree, group.first + lane as u32, penetration);
                     spread.consider(contact, scores.to_array()[lane]);
                 }
@@ -321,7 +336,9 @@ impl Near {
         let mut left = 0;
         for i in 0..self.len {
             self.kept[left] = self.kept[i];
-            let counts = self.kept[i].penetrations.simd_ge(f32x4::splat(self.least));
+            let counts = self.kept[i]
+                .penetrations()
+                .simd_ge(f32x4::splat(self.least));
             left += usize::from(counts.any());
         }
         self.len = left;
@@ -351,8 +368,7 @@ impl Goal for Near {
             let none = f32x4::splat(f32::NEG_INFINITY);
             self.keep(Group {
                 first: found.first,
-                positions: found.positions,
-                penetrations: found.counts.select(found.penetrations, none),
+                penetrations: found.counts.select(found.penetrations, none).to_array(),
             });
         }
         true

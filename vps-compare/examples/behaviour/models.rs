@@ -52,6 +52,9 @@ pub(crate) const BUNNY_KINDS: [Kind; 4] = [
     Kind::Trimesh,
 ];
 
+/// The kinds played with other settings and from other starts.
+pub(crate) const VARIED: [Kind; 3] = [Kind::VpsCoarse, Kind::Vps, Kind::Decomposition];
+
 impl Kind {
     pub(crate) fn name(self) -> &'static str {
         match self {

@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use crate::models::Kind;
+use crate::setup::Setup;
 use crate::stage::{Rest, Stage};
 
 /// One kind of shape in one scene.
 pub(crate) struct Row {
     scene: &'static str,
-    algorithm: &'static str,
+    setup: Setup,
     frequency_hz: f32,
     steps: u32,
     is_complete: bool,
@@ -33,8 +33,8 @@ pub(crate) struct Finding {
 }
 
 /// The columns of `behaviour.csv`.
-pub(crate) const COLUMNS: &str = "scene,algorithm,frequency_hz,steps,complete,steps_per_s,\
-     deepest_mm,kept_percent,drift_mm,speed_mm_s,energy_mj,what,value,passed";
+pub(crate) const COLUMNS: &str = "scene,algorithm,contact_recycling,start,frequency_hz,steps,complete,steps_per_s,\
+     deepest_mm,kept_percent,drift_mm,speed_mm_s,energy_mj,deepest_at_end_mm,what,value,passed";
 
 impl Row {
     /// Of a scene that was played.
@@ -46,7 +46,7 @@ impl Row {
     ) -> Self {
         Self {
             scene,
-            algorithm: stage.kind.name(),
+            setup: stage.setup,
             frequency_hz: stage.frequency_hz(),
             steps: stage.steps,
             is_complete: stage.is_complete,
@@ -59,10 +59,10 @@ impl Row {
     }
 
     /// Of a scene that was not over after a while: not even a step was made.
-    pub(crate) fn unfinished(scene: &'static str, kind: Kind, what: &'static str) -> Self {
+    pub(crate) fn unfinished(scene: &'static str, setup: Setup, what: &'static str) -> Self {
         Self {
             scene,
-            algorithm: kind.name(),
+            setup,
             frequency_hz: 60.0,
             steps: 0,
             is_complete: false,
@@ -83,15 +83,15 @@ impl Row {
         self.scene
     }
 
-    pub(crate) fn algorithm(&self) -> &'static str {
-        self.algorithm
+    pub(crate) fn setup(&self) -> Setup {
+        self.setup
     }
 
     pub(crate) fn what(&self) -> &'static str {
         self.finding.what
     }
 
-    fn passed(&self) -> bool {
+    pub(crate) fn passed(&self) -> bool {
         self.is_complete && self.finding.is_good
     }
 
@@ -100,9 +100,11 @@ impl Row {
         let rest =
             |of: fn(&Rest) -> f32| number(self.rest.as_ref().map(|r| f64::from(of(r)) * 1e3));
         format!(
-            "{},\"{}\",{:.0},{},{},{:.3},{:.4},{},{},{},{},\"{}\",{},{}",
+            "{},\"{}\",{},{},{:.0},{},{},{:.3},{:.4},{},{},{},{},{},\"{}\",{},{}",
             self.scene,
-            self.algorithm,
+            self.setup.kind.name(),
+            self.setup.recycling.name(),
+            self.setup.start,
             self.frequency_hz,
             self.steps,
             self.is_complete,
@@ -112,6 +114,7 @@ impl Row {
             rest(|r| r.drift_m),
             rest(|r| r.speed_m_s),
             rest(|r| r.energy_j),
+            rest(|r| r.deepest_m),
             self.finding.what,
             number(self.finding.value),
             self.passed(),
@@ -120,7 +123,7 @@ impl Row {
 
     /// A line of the table of its scene.
     pub(crate) fn markdown(&self) -> String {
-        let mut line = format!("| {} | ", self.algorithm);
+        let mut line = format!("| {} | ", self.setup.kind.name());
         match self.steps {
             0 => line += "| | | ",
             _ => {
@@ -138,9 +141,10 @@ impl Row {
             Some(rest) => {
                 let [drift, speed, energy] = [rest.drift_m, rest.speed_m_s, rest.energy_j]
                     .map(|v| small(f64::from(v) * 1e3));
-                let _ = write!(line, "{drift} | {speed} | {energy} | ");
+                let left = f64::from(rest.deepest_m) * 1e3;
+                let _ = write!(line, "{left:.2} | {drift} | {speed} | {energy} | ");
             }
-            None => line += "| | | ",
+            None => line += "| | | | ",
         }
         let _ = write!(line, "{} | {} |", self.value(), self.verdict());
         line

@@ -9,6 +9,7 @@ use vps_rapier::{Manifolds, VpsDispatcher};
 
 use crate::kept::Kept;
 use crate::models::{Kind, Model, SEGMENTS_LEVEL};
+use crate::setup::Setup;
 
 /// Friction and restitution of all bodies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +30,7 @@ const LOOK_EVERY: u32 = 5;
 /// A world of bodies that all collide as one kind.
 pub(crate) struct Stage {
     pub(crate) world: PhysicsWorld,
-    pub(crate) kind: Kind,
+    pub(crate) setup: Setup,
     material: Material,
     bodies: Vec<(RigidBodyHandle, &'static Model)>,
     boxes: Vec<(Pose, vps_core::Cuboid)>,
@@ -54,11 +55,14 @@ pub(crate) struct Rest {
     pub(crate) speed_m_s: f32,
     /// The highest kinetic energy of all bodies together in J.
     pub(crate) energy_j: f32,
+    /// How deep any was in another still, in metres.
+    pub(crate) deepest_m: f32,
 }
 
 impl Stage {
     /// An empty world; y is up.
-    pub(crate) fn new(kind: Kind, frequency_hz: f32, material: Material) -> Self {
+    pub(crate) fn new(setup: Setup, frequency_hz: f32, material: Material) -> Self {
+        let kind = setup.kind;
         let mut world = PhysicsWorld::default();
         if kind.is_vps() {
             world.narrow_phase = vps_rapier::narrow_phase();
@@ -75,10 +79,10 @@ impl Stage {
         }
         let parameters = &mut world.integration_parameters;
         parameters.dt = 1.0 / frequency_hz;
-        parameters.contact_recycling = false;
+        setup.recycling.set(parameters);
         Self {
             world,
-            kind,
+            setup,
             material,
             bodies: Vec::new(),
             boxes: Vec::new(),
@@ -116,10 +120,19 @@ impl Stage {
 
     /// A body, its mass that of the solid whatever it collides as.
     pub(crate) fn add(&mut self, model: &'static Model, body: RigidBodyBuilder) -> RigidBodyHandle {
-        let body = body
+        let mut body = body
             .additional_mass_properties(model.mass())
-            .can_sleep(false);
-        let collider = self.collider(model.shape(self.kind));
+            .can_sleep(false)
+            .build();
+        if body.is_dynamic() {
+            let aside = self.setup.aside(self.bodies.len(), model.reach());
+            let start = Pose::from_parts(
+                body.translation() + aside.translation,
+                aside.rotation * *body.rotation(),
+            );
+            body.set_position(start, false);
+        }
+        let collider = self.collider(model.shape(self.setup.kind));
         let (handle, _) = self.world.insert(body, collider);
         self.bodies.push((handle, model));
         handle
@@ -179,6 +192,7 @@ impl Stage {
             rest.energy_j = rest.energy_j.max(stage.energy());
             false
         });
+        rest.deepest_m = self.depth();
         let moved = self.centers().into_iter().zip(before);
         rest.drift_m = moved
             .map(|(now, then)| now.distance(then))

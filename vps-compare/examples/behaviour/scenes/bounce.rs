@@ -1,19 +1,20 @@
 use rapier3d::prelude::*;
 
-use crate::models::{BALL, BALL_RADIUS, Kind};
+use crate::models::{BALL, BALL_RADIUS};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{Material, Stage};
 
 pub(super) const ABOUT: &str = "\
 A ball of 5120 triangles falls 0.5 m on a box with a restitution of 0.5. It must come up again to a
 quarter of that height, to within 10 %. 200 steps a second.";
 
-pub(super) fn play(kind: Kind) -> Row {
+pub(super) fn play(setup: Setup) -> Row {
     let material = Material {
         friction: 0.5,
         restitution: 0.5,
     };
-    let mut stage = Stage::new(kind, 200.0, material);
+    let mut stage = Stage::new(setup, 200.0, material);
     stage.add_ground();
     let fall = 0.5;
     let start = Vector::new(0.0, BALL_RADIUS + fall, 0.0);

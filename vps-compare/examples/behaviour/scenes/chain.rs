@@ -2,8 +2,9 @@ use std::f32::consts::FRAC_PI_2;
 
 use rapier3d::prelude::*;
 
-use crate::models::{Kind, LINK, LINK_SCALE};
+use crate::models::{LINK, LINK_SCALE};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
@@ -14,8 +15,8 @@ of the rod.";
 /// Links.
 const COUNT: u16 = 6;
 
-pub(super) fn play(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+pub(super) fn play(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     let apart = 0.72 * LINK_SCALE;
     let links: Vec<_> = (0..COUNT)
         .map(|i| {

@@ -1,15 +1,16 @@
 use rapier3d::prelude::*;
 
-use crate::models::{BUNNY, Kind};
+use crate::models::BUNNY;
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
 Without gravity, a bunny starts 50 mm aside of another one and so inside of it. They must be apart to
 within 1 mm after less than a second, and never be faster than 5 m/s.";
 
-pub(super) fn play(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+pub(super) fn play(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     stage.world.gravity = Vector::ZERO;
     stage.add(&BUNNY, RigidBodyBuilder::dynamic());
     let aside = Vector::new(0.04, 0.02, 0.02);

@@ -3,8 +3,9 @@ use std::f32::consts::{PI, TAU};
 use rapier3d::prelude::*;
 
 use super::Turned;
-use crate::models::{GEAR, GEAR_SCALE, Kind, SMALL_GEAR};
+use crate::models::{GEAR, GEAR_SCALE, SMALL_GEAR};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{Material, Stage};
 
 pub(super) const ABOUT: &str = "\
@@ -12,12 +13,12 @@ A motor turns a gear wheel of 16 teeth at 3 rad/s, which drives one of 12 on an 
 5 s the driven one must turn 16 / 12 times as far, to within 2 % (the play of the teeth is less), and
 the motor must not jam.";
 
-pub(super) fn play(kind: Kind) -> Row {
+pub(super) fn play(setup: Setup) -> Row {
     let material = Material {
         friction: 0.2,
         restitution: 0.0,
     };
-    let mut stage = Stage::new(kind, 60.0, material);
+    let mut stage = Stage::new(setup, 60.0, material);
     // Tips of the large one reach 3 mm short of the roots of the small one.
     let distance = (0.5 + 0.38 * 12.0 / 16.0 + 0.01) * GEAR_SCALE;
     // The middle of a tooth faces the middle of a gap.

@@ -1,7 +1,8 @@
 use rapier3d::prelude::*;
 
-use crate::models::{Kind, SMALL_BUNNY};
+use crate::models::SMALL_BUNNY;
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
@@ -12,8 +13,8 @@ much smaller and makes 700 steps a second. It has 0.5 s; in the 0.2 s after no p
 /// Of the bunny in the other scenes.
 const TIMES_SMALLER: f32 = 135.0;
 
-pub(super) fn play(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 700.0, PLAIN);
+pub(super) fn play(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 700.0, PLAIN);
     stage.world.integration_parameters.length_unit = 1.0 / TIMES_SMALLER;
     stage.add_box([0.03, 0.002, 0.03], Pose::translation(0.0, -0.001, 0.0));
     let start = RigidBodyBuilder::dynamic()

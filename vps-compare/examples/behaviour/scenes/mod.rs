@@ -18,6 +18,7 @@ use rapier3d::prelude::*;
 
 use crate::models::{ALL_KINDS, BUNNY_KINDS, KINDS, KINDS_AND_SEGMENTS, Kind};
 use crate::record::Row;
+use crate::setup::Setup;
 
 /// Scenes in which triangle meshes may take longer than anyone waits for a step.
 pub(crate) const ENDLESS: [&str; 2] = ["deep inside", "pile"];
@@ -28,7 +29,7 @@ pub(crate) struct Scene {
     /// What happens, and when it is as it should be.
     pub(crate) about: &'static str,
     pub(crate) kinds: &'static [Kind],
-    pub(crate) play: fn(Kind) -> Row,
+    pub(crate) play: fn(Setup) -> Row,
 }
 
 /// All scenes.

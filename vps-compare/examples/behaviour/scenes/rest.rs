@@ -1,15 +1,16 @@
 use rapier3d::prelude::*;
 
-use crate::models::{BUNNY, Kind};
+use crate::models::BUNNY;
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
 A bunny falls askew from 0.3 m on a box and has 4 s to come to rest. In the second after no part of
 it may move at 1 mm/s or more.";
 
-pub(super) fn play(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+pub(super) fn play(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     stage.add_ground();
     let start = RigidBodyBuilder::dynamic()
         .translation(Vector::new(0.0, 0.3, 0.0))

@@ -1,8 +1,9 @@
 use rapier3d::prelude::*;
 
 use super::upright;
-use crate::models::{Kind, PEG, RING};
+use crate::models::{PEG, RING};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
@@ -10,8 +11,8 @@ A ring with a hole of 0.2 m is thrown askew over a fixed peg of 0.12 m. When it 
 is pushed aside at 2 m/s. Its centre must end no further from the peg's axis than the room of 40 mm,
 and at rest to within 1 mm/s.";
 
-pub(super) fn play(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+pub(super) fn play(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     stage.add_ground();
     let peg = Pose::from_parts(Vector::Y * 0.3, upright());
     stage.add(&PEG, RigidBodyBuilder::fixed().pose(peg));

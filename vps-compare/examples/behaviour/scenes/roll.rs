@@ -1,7 +1,8 @@
 use rapier3d::prelude::*;
 
-use crate::models::{BALL, BALL_RADIUS, Kind};
+use crate::models::{BALL, BALL_RADIUS};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const SMOOTHLY: &str = "\
@@ -15,8 +16,8 @@ The same ball may lose no more than a tenth of its spin in the 2 s.";
 const SPIN: f32 = 1.0 / BALL_RADIUS;
 
 /// The stage, the largest change of spin in a step and the spin at the end.
-fn roll(kind: Kind) -> (Stage, f64, f64) {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+fn roll(setup: Setup) -> (Stage, f64, f64) {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     stage.add_ground();
     let start = RigidBodyBuilder::dynamic()
         .translation(Vector::new(-1.0, BALL_RADIUS, 0.0))
@@ -35,8 +36,8 @@ fn roll(kind: Kind) -> (Stage, f64, f64) {
     (stage, share(jump), share(last.length()))
 }
 
-pub(super) fn smoothly(kind: Kind) -> Row {
-    let (stage, jump, _) = roll(kind);
+pub(super) fn smoothly(setup: Setup) -> Row {
+    let (stage, jump, _) = roll(setup);
     let finding = Finding {
         what: "largest change of spin in a step, %",
         value: stage.is_complete.then_some(jump),
@@ -46,8 +47,8 @@ pub(super) fn smoothly(kind: Kind) -> Row {
     Row::new("roll smoothly", &stage, None, finding)
 }
 
-pub(super) fn on(kind: Kind) -> Row {
-    let (stage, _, left) = roll(kind);
+pub(super) fn on(setup: Setup) -> Row {
+    let (stage, _, left) = roll(setup);
     let finding = Finding {
         what: "spin lost, %",
         value: stage.is_complete.then_some(100.0 - left),

@@ -4,8 +4,9 @@ use rapier3d::prelude::*;
 use vps_build::models::Thread;
 
 use super::{Turned, upright};
-use crate::models::{BOLT, Kind, NUT, SCREW_SCALE};
+use crate::models::{BOLT, NUT, SCREW_SCALE};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{Material, Stage};
 
 pub(super) const ABOUT: &str = "\
@@ -13,12 +14,12 @@ A bolt 0.3 m long stands fixed, and its nut, without friction, screws itself dow
 2.4 mm of room, three turns at most. It must turn more than once and, after the first quarter, go
 down by the pitch of 45 mm a turn, to within 3 %.";
 
-pub(super) fn play(kind: Kind) -> Row {
+pub(super) fn play(setup: Setup) -> Row {
     let material = Material {
         friction: 0.0,
         restitution: 0.0,
     };
-    let mut stage = Stage::new(kind, 60.0, material).with_limit(30);
+    let mut stage = Stage::new(setup, 60.0, material).with_limit(30);
     let standing = Pose::from_parts(Vector::ZERO, upright());
     stage.add(&BOLT, RigidBodyBuilder::fixed().pose(standing));
     let pitch = Thread::default().pitch as f32 * SCREW_SCALE;

@@ -1,7 +1,8 @@
 use rapier3d::prelude::*;
 
-use crate::models::{GEAR, GEAR_SCALE, Kind};
+use crate::models::{GEAR, GEAR_SCALE};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{Material, Stage};
 
 pub(super) const SLIDES: &str = "\
@@ -15,12 +16,12 @@ second, and no part of it move at 1 mm/s or more.";
 /// The slope in radians.
 const SLOPE: f32 = 20.0 * std::f32::consts::PI / 180.0;
 
-fn stage(kind: Kind, friction: f32) -> (Stage, RigidBodyHandle) {
+fn stage(setup: Setup, friction: f32) -> (Stage, RigidBodyHandle) {
     let material = Material {
         friction,
         restitution: 0.0,
     };
-    let mut stage = Stage::new(kind, 60.0, material);
+    let mut stage = Stage::new(setup, 60.0, material);
     let slope = Rotation::from_rotation_z(-SLOPE);
     stage.add_box(
         [6.0, 0.2, 2.0],
@@ -32,8 +33,8 @@ fn stage(kind: Kind, friction: f32) -> (Stage, RigidBodyHandle) {
     (stage, gear)
 }
 
-pub(super) fn slides(kind: Kind) -> Row {
-    let (mut stage, gear) = stage(kind, 0.3);
+pub(super) fn slides(setup: Setup) -> Row {
+    let (mut stage, gear) = stage(setup, 0.3);
     let down = Rotation::from_rotation_z(-SLOPE) * Vector::X;
     stage.go(0.5);
     let before = stage.body(gear).linvel().dot(down);
@@ -50,8 +51,8 @@ pub(super) fn slides(kind: Kind) -> Row {
     Row::new("slide", &stage, None, finding)
 }
 
-pub(super) fn sticks(kind: Kind) -> Row {
-    let (mut stage, _) = stage(kind, 0.5);
+pub(super) fn sticks(setup: Setup) -> Row {
+    let (mut stage, _) = stage(setup, 0.5);
     stage.go(2.0);
     let rest = stage.watch(1.0);
     let finding = Finding {

@@ -1,7 +1,8 @@
 use rapier3d::prelude::*;
 
-use crate::models::{BUNNY, GEAR, GEAR_SCALE, Kind};
+use crate::models::{BUNNY, GEAR, GEAR_SCALE};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const GEARS: &str = "\
@@ -12,8 +13,8 @@ pub(super) const BUNNIES: &str = "\
 Four bunnies fall on each other in a shaft 0.32 m wide. After 5 s no part may move at 5 mm/s or more,
 and none may ever have been deeper than 10 mm in another.";
 
-pub(super) fn gears(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+pub(super) fn gears(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     stage.add_ground();
     let thickness = 0.2 * GEAR_SCALE;
     let height = |i: u16| (f32::from(i) + 0.5) * thickness;
@@ -38,8 +39,8 @@ pub(super) fn gears(kind: Kind) -> Row {
     Row::new("stack of gears", &stage, rest, finding)
 }
 
-pub(super) fn bunnies(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN).with_limit(20);
+pub(super) fn bunnies(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN).with_limit(20);
     stage.add_ground();
     for side in [-1.0, 1.0] {
         let aside = side * (0.16 + 0.05);

@@ -1,15 +1,16 @@
 use rapier3d::prelude::*;
 
-use crate::models::{BUNNY, Kind, PLATE, PLATE_THICKNESS};
+use crate::models::{BUNNY, PLATE, PLATE_THICKNESS};
 use crate::record::{Finding, Row};
+use crate::setup::Setup;
 use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
 A bunny falls 50 mm on a plate 2 mm thick that lies on two bars. After 3 s both must be at rest to
 within 1 mm/s, with the bunny on the plate, the plate on the bars, and nothing ever deeper than 2 mm.";
 
-pub(super) fn play(kind: Kind) -> Row {
-    let mut stage = Stage::new(kind, 60.0, PLAIN);
+pub(super) fn play(setup: Setup) -> Row {
+    let mut stage = Stage::new(setup, 60.0, PLAIN);
     for side in [-1.0, 1.0] {
         stage.add_box([0.1, 0.2, 0.6], Pose::translation(0.2 * side, -0.1, 0.0));
     }
