@@ -17,7 +17,7 @@ use std::time::Duration;
 use models::{BUNNY_KINDS, BUNNY_PARTS, Kind, MADE_PARTS, SEGMENTS_LEVEL, VARIED};
 use record::{COLUMNS, Row};
 use scenes::{ENDLESS, SCENES, Scene};
-use setup::{RECYCLINGS, Setup};
+use setup::{RECYCLINGS, Recycling, Setup};
 use vps_build::write_atomically;
 
 /// How long an endless scene may take.
@@ -101,20 +101,15 @@ fn report(rows: &[Row]) -> String {
          and the mass properties of their solid, whatever they collide as; grounds are boxes. 60\n\
          steps a second unless said otherwise; one thread. rapier's own settings but for two: bodies\n\
          do not sleep, and contacts are recycled only until a pair moved by 2 mm (rapier: 50 mm, a\n\
-         fifth of a bunny); what other settings make of it is in the table of contact recycling. The bunny has 35 596 points, or 799 where it says coarse;\n\
-         models made by code have 10 000. *Segments* is VPS with the deepest contact of each segment of\n\
-         level {SEGMENTS_LEVEL} of the shell's tree and without contact clustering, in a few scenes.\n\n\
+         fifth of a bunny); what other settings make of it is in the table of contact recycling. The\n\
+         bunny has 35 596 points, or 799 where it says coarse; models made by code have 10 000.\n\
+         *Segments* is VPS with the deepest contact of each segment of level {SEGMENTS_LEVEL} of the shell's tree\n\
+         and without contact clustering, in a few scenes.\n\n\
          *Deepest* is how far any point of a body has been in another, looked at every fifth step by\n\
-         the shells and voxelmaps of both, whatever they collide as. *Contacts kept* are those whose\n\
-         impulse was handed on from the step before, so that the solver began with it: of the contacts\n\
-         that bore something in a step, of pairs that did in the step before, the share that rapier did\n\
-         not take for new, clusters of contacts where it joins them. It is a new one that comes where\n\
-         another was, and one that bore nothing for a step; which one is the same the dispatchers say\n\
-         themselves: parry by features and places, VPS by points of the shell (or segments), and of those\n\
-         left over by the closest with much the same normal. Where bodies should be at rest,\n\
-         *drift* is how far a centre got in the last second, *speed* what no part was faster than\n\
-         in it, and *energy* the most of all bodies together. Steps a second count stepping alone;\n\
-         slow ones are stopped after 12 s of it (30 s for the bolt, 20 s for the stack of bunnies, 60 s\n\
+         the shells and voxelmaps of both, whatever they collide as. Where bodies should be at rest,\n\
+         *left* is how deep any is in another at the end, *drift* how far a centre got in the last\n\
+         second, *speed* what no part was faster than in it, and *energy* the most of all bodies\n\
+         together. Steps a second count stepping alone; slow ones are stopped after 12 s of it (30 s for the bolt, 20 s for the stack of bunnies, 60 s\n\
          for the pile), and those that have not made a step after {} s. Measured on {},\n\
          {:.0} % of the time waiting for a core that others had.\n\n\
          | | {} |\n|---|---|---|---|---|\n",
@@ -134,14 +129,15 @@ fn report(rows: &[Row]) -> String {
     }
     text += &of_starts(rows);
     text += &of_recycling(rows);
+    text += &of_kept(rows);
     for scene in &SCENES {
         let what = what_of(scene, rows);
         let (title, about) = (capitalised(scene.name), scene.about);
         let _ = write!(
             text,
             "\n## {title}\n\n{about}\n\n\
-             | algorithm | steps/s | deepest, mm | contacts kept, % | left, mm | drift, mm | speed, mm/s | energy, mJ | {what} | as it should be |\n\
-             |---|---|---|---|---|---|---|---|---|---|\n"
+             | algorithm | steps/s | deepest, mm | left, mm | drift, mm | speed, mm/s | energy, mJ | {what} | as it should be |\n\
+             |---|---|---|---|---|---|---|---|---|\n"
         );
         for &kind in scene.kinds {
             for row in played(rows, scene, Setup::new(kind)) {
@@ -208,6 +204,36 @@ fn of_recycling(rows: &[Row]) -> String {
                 let row = played(rows, scene, setup).next();
                 let _ = write!(text, " {} |", row.map_or(String::new(), Row::cell));
             }
+        }
+        text += "\n";
+    }
+    text
+}
+
+/// How many contacts are known again, where all are asked for in every step.
+fn of_kept(rows: &[Row]) -> String {
+    let mut text = format!(
+        "\n## Contacts kept\n\n\
+         Those whose impulse was handed on from the step before, so that the solver began with it: of the\n\
+         contacts that bore something in a step, of pairs that did in the step before, the share that\n\
+         rapier did not take for new, clusters of contacts where it joins them, in %. It is a new one\n\
+         that comes where another was, and one that bore nothing for a step; which one is the same the\n\
+         dispatchers say themselves: parry by features and places, VPS by points of the shell, and of\n\
+         those left over by the closest with much the same normal. Without contact recycling.\n\n\
+         | | {} |\n|---|{}\n",
+        VARIED.map(Kind::name).join(" | "),
+        "---|".repeat(VARIED.len()),
+    );
+    for scene in &SCENES {
+        let _ = write!(text, "| {} |", scene.name);
+        for kind in VARIED {
+            let setup = Setup {
+                recycling: Recycling::Off,
+                ..Setup::new(kind)
+            };
+            let row = played(rows, scene, setup).next();
+            let cell = row.map_or(String::new(), Row::kept);
+            let _ = write!(text, " {cell} |");
         }
         text += "\n";
     }

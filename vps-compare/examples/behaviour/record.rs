@@ -125,16 +125,10 @@ impl Row {
     pub(crate) fn markdown(&self) -> String {
         let mut line = format!("| {} | ", self.setup.kind.name());
         match self.steps {
-            0 => line += "| | | ",
+            0 => line += "| | ",
             _ => {
                 let steps_per_s = speed(self.steps_per_s);
-                let kept = self.kept.map(|share| format!("{:.1}", 100.0 * share));
-                let kept = kept.unwrap_or_default();
-                let _ = write!(
-                    line,
-                    "{steps_per_s} | {:.2} | {kept} | ",
-                    self.deepest_m * 1e3
-                );
+                let _ = write!(line, "{steps_per_s} | {:.2} | ", self.deepest_m * 1e3);
             }
         }
         match &self.rest {
@@ -148,6 +142,12 @@ impl Row {
         }
         let _ = write!(line, "{} | {} |", self.value(), self.verdict());
         line
+    }
+
+    /// The share of contacts that were known again, in %.
+    pub(crate) fn kept(&self) -> String {
+        let percent = self.kept.map(|share| format!("{:.1}", 100.0 * share));
+        percent.unwrap_or_default()
     }
 
     /// The number the scene is about.

@@ -9,8 +9,8 @@ use crate::stage::{PLAIN, Stage};
 
 pub(super) const ABOUT: &str = "\
 A hundred bunnies fall into a bin 1.3 m wide and have 5 s to settle. In the second after there must be
-60 steps a second or more, all bunnies in the bin, and at its end none 20 mm deep in another or in the bin. The
-triangle mesh starts from where VPS left them.";
+60 steps a second or more, all bunnies in the bin, and at its end none 20 mm deep in another or in
+the bin. The triangle mesh starts from where VPS left them.";
 
 const WHAT: &str = "steps a second when settled";
 
