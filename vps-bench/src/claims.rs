@@ -6,7 +6,7 @@ use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::rows;
-use crate::page::short;
+use crate::page::{fixed, short};
 
 /// A statement that a value, or the ratio of two, lies in a range.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -125,12 +125,19 @@ impl Claim {
         }
     }
 
-    /// A number with the unit of the claim.
+    /// A number with the unit of the claim; a whole one that is no ratio, such as a count, without
+    /// digits after the point.
     pub(crate) fn with_unit(&self, value: Option<f64>) -> String {
-        match value {
-            Some(value) if !self.unit.is_empty() => format!("{} {}", short(value), self.unit),
-            value => short(value),
+        let is_whole = self.against.is_none() && value.is_some_and(|v| v.fract() == 0.0);
+        let text = if is_whole {
+            fixed(value, 0)
+        } else {
+            short(value)
+        };
+        if value.is_none() || self.unit.is_empty() {
+            return text;
         }
+        format!("{text} {}", self.unit)
     }
 
     /// Where it stands, in words.
@@ -211,5 +218,14 @@ mod tests {
         assert!(ratio("at_most = 1").check().is_ok());
         let missing = ratio("at_most = 1").judge(&Tables::new());
         assert_eq!(missing.outcome, Outcome::NotComparable);
+    }
+
+    #[test]
+    fn counts_are_written_as_counts() {
+        let text = "name = \"n\"\nsays = \"s\"\nexpect = \"holds\"\nunit = \"of 10\"";
+        let of_ten = |value| claim(text).with_unit(value);
+        assert_eq!(of_ten(Some(4.0)), "4 of 10");
+        assert_eq!(of_ten(Some(0.5)), "0.500 of 10");
+        assert_eq!(of_ten(None), "–");
     }
 }

@@ -73,9 +73,56 @@ pub(crate) fn exponent(points: impl IntoIterator<Item = (f64, f64)>) -> Option<f
     (spread > 1e-12).then(|| along(|x, y| x * y) / spread)
 }
 
+/// How the power of equally spaced values, but for that of their mean, is spread over frequencies: a
+/// periodogram with a Hann window, one-sided. Pairs of a frequency in Hz, from the lowest up to half
+/// the rate, and the density at it in squares of the values' unit per Hz.
+///
+/// By definition, which takes the square of their count in steps.
+pub(crate) fn power_spectrum(values: &[f64], step_s: f64) -> Vec<(f64, f64)> {
+    let count = values.len();
+    let mean = values.iter().sum::<f64>() / count as f64;
+    let turn = |part: usize| (std::f64::consts::TAU * part as f64 / count as f64).sin_cos();
+    let turns: Vec<_> = (0..count).map(turn).collect();
+    let window: Vec<_> = turns.iter().map(|(_, cos)| 0.5 * (1.0 - cos)).collect();
+    let weights = window.iter().map(|w| w * w).sum::<f64>();
+    let density = |wave: usize| {
+        let (mut along, mut across) = (0.0, 0.0);
+        for (k, (value, weight)) in values.iter().zip(&window).enumerate() {
+            let (sin, cos) = turns[wave * k % count];
+            along += weight * (value - mean) * cos;
+            across += weight * (value - mean) * sin;
+        }
+        let frequency = wave as f64 / (count as f64 * step_s);
+        (
+            frequency,
+            2.0 * (along * along + across * across) * step_s / weights,
+        )
+    };
+    (1..=count / 2).map(density).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_wave_has_its_power_at_its_frequency() {
+        let (step_s, height) = (0.005, 3.0);
+        let at = |k: i32| {
+            let phase = std::f64::consts::TAU * 20.0 * step_s * f64::from(k);
+            7.0 + height * (phase + 0.3).sin()
+        };
+        let spectrum = power_spectrum(&(0..400).map(at).collect::<Vec<_>>(), step_s);
+        assert_eq!(spectrum.len(), 200);
+        let per_hz = 0.5;
+        let power = |near: fn(f64) -> bool| {
+            let of_all = spectrum.iter().filter(|(hz, _)| near(*hz));
+            of_all.map(|(_, density)| density * per_hz).sum::<f64>()
+        };
+        let all = 0.5 * height * height;
+        assert!((power(|hz| (hz - 20.0).abs() < 1.1) / all - 1.0).abs() < 1e-9);
+        assert!(power(|hz| (hz - 20.0).abs() > 1.1) / all < 1e-9);
+    }
 
     #[test]
     fn a_power_law_has_its_exponent() {

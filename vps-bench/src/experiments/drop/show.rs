@@ -45,7 +45,10 @@ pub(super) fn present(
                 ("kinetic_energy_mj", "kinetic energy (mJ)"),
                 1e-5,
             )?),
-            Show::Spin => blocks.push(page.spin()?),
+            Show::Spin => {
+                blocks.push(page.spin(table(tables, "turning")?)?);
+                blocks.push(page.spectrum(table(tables, "spectrum")?)?);
+            }
             Show::Frequencies => {
                 blocks.push(page.held()?);
                 blocks.push(page.depths()?);
@@ -214,16 +217,18 @@ impl Page<'_> {
     }
 
     /// How evenly bodies roll: "discrete transitions" are changes of spin far above the usual one.
-    fn spin(&self) -> Result<Block, Error> {
+    fn spin(&self, turning: &DataFrame) -> Result<Block, Error> {
         let case = self.first_case();
         let mut table = Table::new(
-            "Change of the angular velocity in a step, while the body rolls",
+            "Change of the angular velocity in a step, while the body rolls, and how fast it changes",
             &[
                 "algorithm",
                 "rolling steps",
                 "median, rad/s",
                 "p99, rad/s",
                 "p99 / median",
+                "power above 20 Hz, rad²/s²",
+                "of all, %",
             ],
         );
         for name in &self.settings.algorithms {
@@ -233,15 +238,58 @@ impl Page<'_> {
             let median = row.number("spin_change_rad_s_median");
             let p99 = row.number("spin_change_rad_s_p99");
             let jump = median.zip(p99).map(|(median, p99)| p99 / median);
+            let turning = rows_of(turning, &case, name).next();
+            let power = |column: &str| turning.as_ref()?.number(column);
+            let fast = power("power_above_20_hz_rad2_s2");
+            let share = fast
+                .zip(power("power_rad2_s2"))
+                .map(|(fast, all)| 100.0 * fast / all);
             table.push([
                 self.label(name)?,
                 fixed(row.number("rolling_steps"), 0),
                 short(median),
                 short(p99),
                 short(jump),
+                short(fast),
+                short(share),
             ]);
         }
         Ok(Block::Table(table))
+    }
+
+    /// The power of the angular velocity over frequencies: the more a body jumps, the more of it is
+    /// at high ones.
+    fn spectrum(&self, spectrum: &DataFrame) -> Result<Block, Error> {
+        let case = self.first_case();
+        let mut curves = Vec::new();
+        for name in &self.settings.algorithms {
+            let algorithm = self.algorithms.get(name)?;
+            let points = rows_of(spectrum, &case, name).filter_map(|row| {
+                let power = row.number("power_rad2_s2_per_hz")?;
+                Some((row.number("turning_hz")?, power))
+            });
+            let run: Vec<_> = points
+                .filter(|(hz, power)| *hz >= 1.0 && *power > 0.0)
+                .collect();
+            curves.push(Curve {
+                label: algorithm.label.clone(),
+                color: algorithm.rgb(),
+                runs: vec![run],
+                has_points: false,
+            });
+        }
+        let y = decades(&curves, &[], 1e-12);
+        let figure = Figure {
+            title: "Power of the angular velocity, mean of all start orientations".into(),
+            x: Axis::logarithmic("frequency (Hz)", 1.0..100.0),
+            // Room for the legend beside the curves.
+            y: Axis::logarithmic("power (rad²/s² per Hz)", y.start..y.end * 1000.0),
+            curves,
+            marks: Vec::new(),
+            marks_label: String::new(),
+        };
+        figure.write(self.folder, "spin_spectrum")?;
+        Ok(link("spin_spectrum", figure.title))
     }
 
     /// A row an algorithm, a column a frequency.

@@ -28,6 +28,9 @@ pub(super) struct StepRow {
     /// Of the centre of mass, after the step.
     linear_velocity_m_s: f32,
     angular_velocity_rad_s: f32,
+    angular_velocity_x_rad_s: f32,
+    angular_velocity_y_rad_s: f32,
+    angular_velocity_z_rad_s: f32,
     /// By how much the angular velocity changed in the step.
     spin_change_rad_s: f32,
     kinetic_energy_j: f32,
@@ -70,6 +73,7 @@ impl Settings {
             let queries = world.step()?;
             let (contacts, penetration_m) = world.contacts();
             let body = &world.physics.bodies[body];
+            let turns = body.angvel();
             if !body.position().is_finite() {
                 return Err(format!("the body left all bounds in step {step}"));
             }
@@ -83,8 +87,11 @@ impl Settings {
                 penetration_m,
                 true_penetration_m: falling.oracle.penetration(&asked, 0.0),
                 linear_velocity_m_s: body.linvel().length(),
-                angular_velocity_rad_s: body.angvel().length(),
-                spin_change_rad_s: (body.angvel() - spin).length(),
+                angular_velocity_rad_s: turns.length(),
+                angular_velocity_x_rad_s: turns.x,
+                angular_velocity_y_rad_s: turns.y,
+                angular_velocity_z_rad_s: turns.z,
+                spin_change_rad_s: (turns - spin).length(),
                 kinetic_energy_j: body.kinetic_energy(),
                 x_m: t.x,
                 y_m: t.y,

@@ -1,12 +1,19 @@
 //! Tables of what bodies did.
 
-use polars::prelude::*;
+use std::collections::BTreeMap;
 
-use super::Settings;
+use polars::prelude::*;
+use serde::Serialize;
+
+use super::{Settings, Show};
 use crate::claims::Tables;
 use crate::experiments::Error;
+use crate::frame::{self, rows_of};
+use crate::stats::power_spectrum;
 
 /// `summary`: a row a case and algorithm. `course`: the medians over all orientations, a row a step.
+/// If it is shown how bodies turn in the steps that count: `spectrum`, a row a frequency, and
+/// `turning`, a row a case and algorithm.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let mut parts = Vec::new();
     for &frequency in &settings.frequencies_hz {
@@ -35,10 +42,96 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
                 .alias("kinetic_energy_mj"),
         ])
         .collect()?;
-    Ok(Tables::from([
+    let mut tables = Tables::from([
         ("summary".to_owned(), summary),
         ("course".to_owned(), course),
-    ]))
+    ]);
+    if settings.show.contains(&Show::Spin) {
+        let (spectrum, turning) = spectra(settings, rows)?;
+        tables.insert("spectrum".into(), spectrum);
+        tables.insert("turning".into(), turning);
+    }
+    Ok(tables)
+}
+
+/// The power of the angular velocity at a frequency.
+#[derive(Serialize)]
+struct SpectrumRow {
+    case: String,
+    algorithm: String,
+    turning_hz: f64,
+    /// Mean of all start orientations, along all axes together.
+    power_rad2_s2_per_hz: f64,
+}
+
+/// All of it together, and what of it is fast.
+#[derive(Serialize)]
+struct TurningRow {
+    case: String,
+    algorithm: String,
+    power_rad2_s2: f64,
+    power_above_20_hz_rad2_s2: f64,
+}
+
+/// From this frequency on turning is fast, in Hz: no body rolls so fast.
+const FAST_HZ: f64 = 20.0;
+
+/// Spectra of the angular velocity in the steps that count.
+fn spectra(settings: &Settings, rows: &DataFrame) -> Result<(DataFrame, DataFrame), Error> {
+    const AXES: [&str; 3] = [
+        "angular_velocity_x_rad_s",
+        "angular_velocity_y_rad_s",
+        "angular_velocity_z_rad_s",
+    ];
+    let (mut spectrum, mut turning) = (Vec::new(), Vec::new());
+    for &frequency in &settings.frequencies_hz {
+        let [from, to] = settings.measured_steps(frequency).map(f64::from);
+        for algorithm in &settings.algorithms {
+            let case = Settings::case(frequency);
+            // By seed, and in it by axis.
+            let mut turns = BTreeMap::<String, [Vec<f64>; 3]>::new();
+            for row in rows_of(rows, &case, algorithm) {
+                let step = row.number("step").unwrap_or_default();
+                if from <= step && step < to {
+                    let of_seed = turns.entry(row.text("seed")).or_default();
+                    for (values, axis) in of_seed.iter_mut().zip(AXES) {
+                        values.push(row.number(axis).unwrap_or_default());
+                    }
+                }
+            }
+            let spectra = turns.values().flatten();
+            let spectra: Vec<_> = spectra
+                .map(|values| power_spectrum(values, 1.0 / f64::from(frequency)))
+                .collect();
+            let frequencies = spectra.first().into_iter().flatten().enumerate();
+            let of_one: Vec<_> = frequencies
+                .map(|(i, (turning_hz, _))| {
+                    let powers = spectra.iter().filter_map(|s| s.get(i));
+                    let total = powers.map(|(_, power)| power).sum::<f64>();
+                    SpectrumRow {
+                        case: case.clone(),
+                        algorithm: algorithm.clone(),
+                        turning_hz: *turning_hz,
+                        power_rad2_s2_per_hz: total / turns.len() as f64,
+                    }
+                })
+                .collect();
+            if let Some(lowest) = of_one.first() {
+                let above = |hz: f64| {
+                    let above = of_one.iter().filter(|row| row.turning_hz > hz);
+                    above.map(|row| row.power_rad2_s2_per_hz).sum::<f64>() * lowest.turning_hz
+                };
+                turning.push(TurningRow {
+                    power_rad2_s2: above(0.0),
+                    power_above_20_hz_rad2_s2: above(FAST_HZ),
+                    case,
+                    algorithm: algorithm.clone(),
+                });
+            }
+            spectrum.extend(of_one);
+        }
+    }
+    Ok((frame::of(spectrum)?, frame::of(turning)?))
 }
 
 /// Times of steps with a query.

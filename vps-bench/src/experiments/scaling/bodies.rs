@@ -1,17 +1,16 @@
 //! Times of steps of a world with many bodies at rest.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rapier3d::prelude::*;
-use vps_compare::{Prepared, summary};
+use vps_compare::Prepared;
 
 use super::{Settings, TimeRow};
 use crate::experiments::orientation::orientation_of;
+use crate::experiments::world::{Stepping, World};
 use crate::lab::{Body, Lab};
-use crate::timed::{Stopwatch, Timed};
 
 impl Settings {
     pub(super) fn steps(&self, algorithm: &str, lab: &Lab) -> Result<Vec<TimeRow>, String> {
@@ -20,29 +19,27 @@ impl Settings {
         let prepared = ready.prepared()?;
         let mut rows = Vec::new();
         for &count in &self.bodies.counts {
-            let stopwatch = Arc::new(Stopwatch::default());
-            let mut world = self.world(&body, prepared, &stopwatch, count);
+            let mut world = self.world(&body, prepared, count);
             for _ in 0..self.bodies.settling_steps {
-                world.step();
+                world.step()?;
             }
             for sample in 0..self.bodies.timed_steps {
                 let start = Instant::now();
-                world.step();
+                world.step()?;
                 let took = start.elapsed().as_secs_f64() * 1e6;
-                let pairs = world.narrow_phase.contact_pairs();
-                let manifolds = pairs.flat_map(|pair| pair.solver_manifolds().iter());
                 let bodies = f64::from(count);
                 rows.push(TimeRow {
                     size: bodies,
                     sample,
                     time_us: took / bodies,
-                    contacts: summary(manifolds).0 as f64 / bodies,
+                    contacts: world.contacts().0 as f64 / bodies,
                 });
             }
-            if stopwatch.take().unsupported > 0 {
-                return Err("the dispatcher does not support this pair of shapes".into());
-            }
-            let lowest = world.bodies.iter().map(|(_, body)| body.translation().y);
+            let lowest = world
+                .physics
+                .bodies
+                .iter()
+                .map(|(_, body)| body.translation().y);
             if lowest.fold(0.0, f32::min) < -self.bodies.spacing_m {
                 return Err(format!("of {count} bodies one fell through the ground"));
             }
@@ -52,31 +49,19 @@ impl Settings {
 
     /// Bodies in random orientations on a square grid, a little above an exact box, since a
     /// voxelmap of the whole ground would be another one for each number of bodies.
-    fn world(
-        &self,
-        body: &Body,
-        prepared: &Prepared,
-        stopwatch: &Arc<Stopwatch>,
-        count: u32,
-    ) -> PhysicsWorld {
-        let timed = Timed::new(prepared.dispatcher.clone(), stopwatch.clone());
+    fn world(&self, body: &Body, prepared: &Prepared, count: u32) -> World {
         let settings = &self.bodies;
-        let mut world = PhysicsWorld {
-            narrow_phase: NarrowPhase::with_query_dispatcher(timed),
-            gravity: Vector::new(0.0, -settings.gravity_m_s2, 0.0),
-            ..PhysicsWorld::default()
+        let stepping = Stepping {
+            gravity_m_s2: settings.gravity_m_s2.into(),
+            frequency_hz: settings.frequency_hz,
+            prediction_m: self.prediction_m.into(),
         };
-        let parameters = &mut world.integration_parameters;
-        parameters.dt = 1.0 / settings.frequency_hz;
-        // Every step asks about every body.
-        parameters.contact_recycling = false;
-        parameters.normalized_prediction_distance = self.prediction_m / parameters.length_unit;
+        let mut world = stepping.world(&prepared.dispatcher);
         let side = f64::from(count).sqrt().ceil() as u32;
         let width = settings.spacing_m * side as f32;
         let half = width + 1.0;
-        let ground = ColliderBuilder::cuboid(half, 0.1, half);
-        let below = Vector::new(0.0, -0.1, 0.0);
-        world.insert(RigidBodyBuilder::fixed().translation(below), ground);
+        let extents_m = [half, 0.1, half].map(|half| 2.0 * f64::from(half));
+        world.insert_ground(ColliderBuilder::cuboid(half, 0.1, half), extents_m);
 
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let center = body.mass.center();
@@ -87,12 +72,8 @@ impl Settings {
             let height = body.oracle.penetration(&turned, 0.0) + self.fixed_depth_m;
             let place = |i: u32| (i as f32 + 0.5) * settings.spacing_m - 0.5 * width;
             let start = Vector::new(place(i % side), height, place(i / side));
-            let builder = RigidBodyBuilder::dynamic()
-                .pose(Pose::from_parts(start, turned.rotation))
-                .additional_mass_properties(mass)
-                .can_sleep(false);
-            let shape = ColliderBuilder::new(prepared.body.clone()).density(0.0);
-            world.insert(builder, shape);
+            let shape = ColliderBuilder::new(prepared.body.clone());
+            world.insert_body(shape, Pose::from_parts(start, turned.rotation), mass);
         }
         world
     }

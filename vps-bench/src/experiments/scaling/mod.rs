@@ -57,7 +57,7 @@ struct Bodies {
     spacing_m: f32,
     mass_kg: f32,
     gravity_m_s2: f32,
-    frequency_hz: f32,
+    frequency_hz: u32,
     /// Steps until they rest, and those that are timed.
     settling_steps: u32,
     timed_steps: u32,

@@ -8,10 +8,10 @@ use rapier3d::math::{Pose, Vector};
 use serde::Serialize;
 use vps_core::{DistanceField, Estimate, PointSphereTree, Query, Vec3, Weight};
 
-use super::quantiles::Quantiles;
 use super::{Limit, Settings};
 use crate::experiments::orientation::orientation_of;
 use crate::lab::Body;
+use crate::stats::Sample;
 
 /// What a batch of poses gave; errors are those against the whole query.
 #[derive(Clone, Debug, Serialize)]
@@ -144,32 +144,27 @@ fn ask<F: DistanceField>(
 }
 
 fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
-    let none = Quantiles {
-        median: 0.0,
-        p99: 0.0,
-        max: 0.0,
-    };
     let poses = clock.query_us.len();
-    let penetration = Quantiles::of(errors.penetration_mm).unwrap_or(none);
-    let bound = Quantiles::of(errors.bound_mm).unwrap_or(none);
-    let force = Quantiles::of(errors.force);
-    let query = Quantiles::of(clock.query_us).unwrap_or(none);
+    let penetration = quantiles(errors.penetration_mm).map(Option::unwrap_or_default);
+    let bound = quantiles(errors.bound_mm).map(Option::unwrap_or_default);
+    let force = quantiles(errors.force);
+    let query = quantiles(clock.query_us).map(Option::unwrap_or_default);
     let has_deadline = matches!(limit, Limit::Deadline(_));
     BatchRow {
         poses,
         complete: errors.complete,
-        penetration_error_mm_median: penetration.median,
-        penetration_error_mm_p99: penetration.p99,
-        penetration_error_mm_max: penetration.max,
-        bound_error_mm_median: bound.median,
-        bound_error_mm_p99: bound.p99,
-        bound_error_mm_max: bound.max,
-        force_error_median: force.map(|f| f.median),
-        force_error_p99: force.map(|f| f.p99),
-        force_error_max: force.map(|f| f.max),
-        query_us_median: query.median,
-        query_us_p99: query.p99,
-        query_us_max: query.max,
+        penetration_error_mm_median: penetration[0],
+        penetration_error_mm_p99: penetration[1],
+        penetration_error_mm_max: penetration[2],
+        bound_error_mm_median: bound[0],
+        bound_error_mm_p99: bound[1],
+        bound_error_mm_max: bound[2],
+        force_error_median: force[0],
+        force_error_p99: force[1],
+        force_error_max: force[2],
+        query_us_median: query[0],
+        query_us_p99: query[1],
+        query_us_max: query[2],
         overruns: has_deadline.then_some(clock.overruns),
         overrun_us_max: has_deadline.then_some(clock.overrun_us_max),
         late_by_itself: has_deadline.then_some(clock.late_by_itself),
@@ -177,6 +172,12 @@ fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
         idle_overruns: has_deadline.then_some(clock.idle_overruns),
         idle_overrun_us_max: has_deadline.then_some(clock.idle_overrun_us_max),
     }
+}
+
+/// Median, 99th percentile and largest.
+fn quantiles(values: Vec<f64>) -> [Option<f64>; 3] {
+    let sample = Sample::of(values);
+    [sample.median(), sample.quantile(0.99), sample.most()]
 }
 
 /// How far estimates are from what there is.

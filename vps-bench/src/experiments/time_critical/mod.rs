@@ -2,7 +2,6 @@
 //! well it keeps a deadline.
 
 mod measure;
-mod quantiles;
 mod show;
 mod summary;
 
