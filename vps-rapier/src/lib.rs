@@ -63,6 +63,7 @@ mod real;
 mod saved;
 mod shape;
 mod shape_field;
+mod thickness;
 mod way;
 mod workspace;
 

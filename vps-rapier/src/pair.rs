@@ -57,14 +57,10 @@ impl<'s> Pair<'s> {
             _ => points(a) <= points(b),
         };
         let (shell, field) = if first_is_shell { (a, b) } else { (b, a) };
-        // Between the points of the shell there is room for a small shape; its own points find it.
-        let is_small = |shape: &VpsShape, spacing: f32| {
-            let extents = shape.asset().voxelmap.solid().extents();
-            extents.min_element() < THICK * spacing
-        };
         let is_free = |s: &VpsShape| s.role() == Role::Mixed;
         let both = [a, b].iter().any(|s| s.role() == Role::Both)
-            || is_free(a) && is_free(b) && is_small(field, shell.spacing());
+            // Between the points of the shell there is room for what is thin; its own points find it.
+            || is_free(a) && is_free(b) && field.thickness() < THICK * shell.spacing();
         let back = both.then(|| Way::in_map(field, shell, sampling, !first_is_shell));
         Self {
             ways: [

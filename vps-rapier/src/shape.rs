@@ -9,6 +9,7 @@ use rapier3d::parry::shape::{FeatureId, Shape, ShapeType, SharedShape, TypedShap
 use vps_core::{Asset, DistanceField, Vec3};
 
 use crate::real::{core_real, core_vector, real, vector};
+use crate::thickness::thickness;
 
 /// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell, and
 /// the field of the other's edges.
@@ -18,7 +19,7 @@ pub enum Role {
     /// The field, if the other is not that rather.
     Voxelmap,
     /// The shell if it has fewer points than the other (section 3.2), and the field too if the other
-    /// is thin compared to the spacing of those points.
+    /// is thinner somewhere than twice the spacing of those points.
     #[default]
     Mixed,
     /// The shell, if the other is not that rather.
@@ -35,6 +36,7 @@ pub enum Role {
 pub struct VpsShape {
     asset: Arc<Asset<'static>>,
     spacing: f32,
+    thickness: f32,
     role: Role,
     file: Option<Arc<Path>>,
 }
@@ -43,12 +45,14 @@ pub struct VpsShape {
 const COVERED: f32 = 1.5;
 
 impl VpsShape {
-    /// A shape of an asset, shell or field as fits the pair.
+    /// A shape of an asset, shell or field as fits the pair. Takes some milliseconds to see how thick
+    /// it is.
     pub fn new(asset: Arc<Asset<'static>>) -> Self {
         let areas = asset.tree.areas();
         let area: f32 = areas.iter().sum();
         let spacing = (area / (COVERED * areas.len() as f32)).sqrt();
         Self {
+            thickness: thickness(&asset),
             asset,
             spacing,
             role: Role::Mixed,
@@ -59,6 +63,12 @@ impl VpsShape {
     /// How far the points of the shell are apart in metres, about.
     pub fn spacing(&self) -> f32 {
         self.spacing
+    }
+
+    /// How thick the solid is in metres, but for the thinnest parts: along the normals of all but a
+    /// twentieth of its points.
+    pub fn thickness(&self) -> f32 {
+        self.thickness
     }
 
     /// The same shape, its asset being the one in a file.

@@ -6,6 +6,7 @@
 use std::path::PathBuf;
 
 use vps_build::{BuildOptions, Mesh, PointCount, Resolution, models};
+use vps_rapier::rapier3d::parry::query::QueryDispatcher;
 use vps_rapier::rapier3d::parry::shape::Cuboid;
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{Role, ShapeError, VpsShape, VpsShapeBuilder};
@@ -160,4 +161,49 @@ fn a_saved_world_goes_on_the_same() {
             .iter()
             .all(|(_, c)| c.shape().as_ball().is_none())
     );
+}
+
+#[test]
+fn a_shape_is_as_thick_as_where_it_is_thin() {
+    let thickness = |mesh: &Mesh| {
+        let shape = VpsShapeBuilder::new(mesh.clone()).options(options());
+        shape.build().unwrap().thickness()
+    };
+    let cube = Mesh::cuboid([1.0; 3]).unwrap();
+    assert!((thickness(&cube) - 1.0).abs() < 0.05);
+    let plate = Mesh::cuboid([1.0, 0.1, 1.0]).unwrap();
+    assert!((thickness(&plate) - 0.1).abs() < 0.03);
+    let rod = Mesh::cuboid([0.1, 3.0, 0.1]).unwrap();
+    assert!((thickness(&rod) - 0.1).abs() < 0.05);
+    // The teeth of a gear are thinner than its wheel.
+    let gear = thickness(&models::gear(12));
+    assert!(gear > 0.05 && gear < 0.5, "{gear}");
+}
+
+#[test]
+fn the_wall_of_a_cup_is_found_between_the_points_of_a_coarse_shell() {
+    let shape = |mesh: Mesh, points| {
+        let points = PointCount::About(points);
+        let options = BuildOptions {
+            points,
+            ..options()
+        };
+        VpsShapeBuilder::new(mesh).options(options).build().unwrap()
+    };
+    let block = shape(Mesh::cuboid([3.0; 3]).unwrap(), 400);
+    let cup = shape(models::cup(48), 3000);
+    let extents = cup.compute_local_aabb().half_extents() * 2.0;
+    // The cup is not small, its wall is.
+    assert!(extents.min_element() as f32 > 2.0 * block.spacing());
+    assert!(cup.thickness() < block.spacing());
+    let dispatcher = vps_rapier::VpsDispatcher::default();
+    for turned in [0.0, 0.7, 1.9, 3.0] {
+        // Somewhere its side is 0.02 m in the upper face.
+        let rotation = Rotation::from_rotation_y(turned as Real);
+        let low = cup.compute_aabb(&rotation.into()).mins.y;
+        let above = Pose::from_parts(Vector::Y * (1.5 - low - 0.02), rotation);
+        let found = dispatcher.contact(&above, &block, &cup, 0.0).unwrap();
+        let depth = -found.expect("a contact").dist;
+        assert!((depth - 0.02).abs() < 0.015, "{depth} at {turned}");
+    }
 }
