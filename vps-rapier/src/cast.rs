@@ -86,8 +86,8 @@ impl Motion for Turning<'_> {
 /// from it; close by, where that is more than the distance, half of it. Shapes that cannot meet in
 /// time are not looked at closer than that.
 ///
-/// A shape that passes close by another, as a body that slides on its ground does, has no way to go
-/// by that measure: it goes half a voxel at a time, and back to when it met something if it did.
+/// A shape that is close to another, as a body that slides on its ground is, has no way to go by that
+/// measure: it goes half a voxel at a time, and back to when it met something if it did.
 ///
 /// Unless it stops at penetration, what is within the target distance already is only met if it comes
 /// closer.
@@ -128,7 +128,7 @@ impl<M: Motion> Cast<'_, '_, M> {
             let closest = self.closest(time, way + error)?;
             let free = self.free(&closest);
             if free <= self.tolerance
-                && let Some(contact) = self.met(time)
+                && let Some(contact) = self.met_by(time, closest)
             {
                 let (time, contact) = self.first_met([before, time], contact);
                 let is_start = time == start_time && self.free(&contact) <= 0.0;
@@ -140,8 +140,7 @@ impl<M: Motion> Cast<'_, '_, M> {
                 return Some(hit(time, &contact, status));
             }
             before = time;
-            let is_ahead = free > self.tolerance && self.approaches(time, &closest);
-            if free > stride || is_ahead {
+            if free > stride {
                 time += (free - error).max(0.5 * free.min(near)) / speed;
             } else if time < end_time {
                 time = (time + stride / speed).min(end_time);
@@ -172,7 +171,11 @@ impl<M: Motion> Cast<'_, '_, M> {
     /// are others much like it, which tell nothing that it does not; elsewhere may be a wall, which
     /// field and shell agree about.
     fn met(&self, time: Real) -> Option<PairContact> {
-        let deepest = self.closest(time, 0.0)?;
+        self.met_by(time, self.closest(time, 0.0)?)
+    }
+
+    /// The same where the deepest contact is known.
+    fn met_by(&self, time: Real, deepest: PairContact) -> Option<PairContact> {
         if self.meets_all || self.approaches(time, &deepest) {
             return Some(deepest);
         }
