@@ -56,6 +56,34 @@ fn wrench_of(
     (wrench, size as f32)
 }
 
+/// The manifold that is searched for is the one picked from a list of all contacts.
+fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
+    query: &Query<'_, F>,
+    field: &F,
+    pose: Pose3,
+    margin: f32,
+    flat: &[Contact],
+) -> Result<(), TestCaseError> {
+    let Some(deepest) = deepest(flat) else {
+        prop_assert!(query.manifold::<N>().contacts().is_empty());
+        return Ok(());
+    };
+    // As the query turns it, to the bit.
+    let rotation = Mat3::from_quat(pose.rotation);
+    let at = rotation * deepest.position + pose.translation;
+    let inward = rotation.transpose() * field.inward_direction(at);
+    let along = if inward == Vec3::ZERO {
+        -deepest.normal
+    } else {
+        inward
+    };
+    for motion in [Some(0.0), Some(0.3 * margin), None] {
+        let listed = ContactManifold::<N>::spread(flat, along, margin, motion);
+        prop_assert_eq!(query.with_motion(motion).manifold::<N>(), listed);
+    }
+    Ok(())
+}
+
 /// All queries with one field agree with the test of all points.
 fn check_query<F: DistanceField + ?Sized>(
     shell: &Asset<'_>,
@@ -113,25 +141,8 @@ fn check_query<F: DistanceField + ?Sized>(
         check_stiffness(&linear, shell, &flat, center, weight)?;
     }
 
+    check_manifold::<_, 5>(&query, field, pose, margin, &flat)?;
     let manifold = query.manifold::<5>();
-    if let Some(deepest) = query.deepest() {
-        // As the query turns it, to the bit.
-        let rotation = Mat3::from_quat(pose.rotation);
-        let at = rotation * deepest.position + pose.translation;
-        let inward = rotation.transpose() * field.inward_direction(at);
-        let along = if inward == Vec3::ZERO {
-            -deepest.normal
-        } else {
-            inward
-        };
-        for motion in [Some(0.0), Some(0.3 * margin), None] {
-            let listed = ContactManifold::<5>::spread(&flat, along, margin, motion);
-            let searched = query.with_motion(motion).manifold::<5>();
-            prop_assert_eq!(searched, listed);
-        }
-    } else {
-        prop_assert!(manifold.contacts().is_empty());
-    }
     let deep = query.deepest().map_or(u32::MAX, |c| c.point);
     for hint in [0, tree.point_count() as u32 / 2, deep] {
         let hinted = query.with_hint(hint);
@@ -253,6 +264,23 @@ proptest! {
         let field = asset_of(&field, 10, encoding, density);
         for (pose, margin) in poses {
             check_all_fields(&shell, &field.voxelmap, pose, margin)?;
+        }
+    }
+
+    /// Of so many contacts not all are kept while the deepest is searched for.
+    #[test]
+    fn manifolds_of_thousands_of_contacts_are_those_of_a_list(
+        shell in bumpy_mesh(),
+        poses in prop::collection::vec((pose(0.9), 0.0..0.3_f32), 8),
+    ) {
+        let shell = asset(&shell, 5000, Encoding::Distances(None));
+        let map = shell.voxelmap.trilinear();
+        let cuboid = Cuboid::new(Vec3::splat(0.8));
+        for (pose, margin) in poses {
+            let query = Query::new(&shell.tree, &map, pose).with_margin(margin);
+            check_manifold::<_, 8>(&query, &map, pose, margin, &flat_contacts(&query))?;
+            let query = Query::new(&shell.tree, &cuboid, pose).with_margin(margin);
+            check_manifold::<_, 8>(&query, &cuboid, pose, margin, &flat_contacts(&query))?;
         }
     }
 
