@@ -116,8 +116,10 @@ fn section(section: &Section, folder: &Path) -> Result<Markup, Error> {
             @if section.is_quick { p class="quick" { (QUICK) } }
             @for block in &blocks { (block) }
             @if !verdicts.is_empty() {
-                h3 { "Verdicts" }
-                (claims(&verdicts, false))
+                div class="verdicts" {
+                    h3 { "Verdicts" }
+                    (claims(&verdicts, false))
+                }
             }
             h3 { "How it could mislead" }
             (prose(&section.misleads))
