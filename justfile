@@ -48,9 +48,11 @@ test-random: (test-with "")
 test-with seed:
     {{ if seed == "" { "" } else { "PROPTEST_RNG_SEED=" + seed } }} cargo test --locked --workspace --exclude vps-bench
     cargo test --locked --release -p vps-bench
-    # Worlds in double precision, on several threads, and in files.
+    # Worlds in double precision, on several threads with wide vectors and in files, and the same on
+    # every machine.
     cargo test --locked -p vps-rapier --no-default-features --features f64,build --tests
-    cargo test --locked -p vps-rapier --features serde,rapier3d/parallel --test shapes --test switches
+    cargo test --locked -p vps-rapier --features serde,rapier3d/parallel,rapier3d/simd8 --test shapes --test switches
+    cargo test --locked -p vps-rapier --features rapier3d/enhanced-determinism --test switches
 
 # The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
 no-std:
