@@ -176,7 +176,7 @@ impl<M: Motion> Cast<'_, '_, M> {
 
     /// The same where the deepest contact is known.
     fn met_by(&self, time: Real, deepest: PairContact) -> Option<PairContact> {
-        if self.meets_all || self.approaches(time, &deepest) {
+        if self.meets_all || self.closes(time, &deepest, deepest.normals[0]) {
             return Some(deepest);
         }
         let is_other = |contact: &PairContact| {
@@ -191,10 +191,6 @@ impl<M: Motion> Cast<'_, '_, M> {
 
     fn free(&self, contact: &PairContact) -> Real {
         real(-contact.penetration) - self.target
-    }
-
-    fn approaches(&self, time: Real, contact: &PairContact) -> bool {
-        self.closes(time, contact, contact.normals[0])
     }
 
     /// Whether the shapes come closer to each other at a contact, along a normal out of the first.

@@ -30,7 +30,7 @@ pub(crate) const RECYCLINGS: [Recycling; 3] =
     [Recycling::Off, Recycling::Close, Recycling::Default];
 
 /// [`Recycling::Close`] in units of length.
-pub(crate) const CLOSE: f32 = 0.002;
+const CLOSE: f32 = 0.002;
 
 /// By how much of its size another start of a body may be aside along each axis, and turned in
 /// radians.
