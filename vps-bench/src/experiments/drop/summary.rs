@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Settings, Show};
 use crate::claims::Tables;
 use crate::experiments::Error;
-use crate::frame::{self, rows_of};
+use crate::frame::{self, rows};
 use crate::stats::power_spectrum;
 
 /// `summary`: a row a case and algorithm. `course`: the medians over all orientations, a row a step.
@@ -16,6 +16,8 @@ use crate::stats::power_spectrum;
 /// `turning`, a row a case and algorithm.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let mut parts = Vec::new();
+    let (mut spectrum, mut turning) = (Vec::new(), Vec::new());
+    let is_spectrum_shown = settings.show.contains(&Show::Spin);
     for &frequency in &settings.frequencies_hz {
         let case = Settings::case(frequency);
         let of_case = rows.clone().lazy().filter(col("case").eq(lit(case)));
@@ -26,6 +28,11 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
             let of_both = of_both.collect()?;
             if of_both.height() > 0 {
                 parts.push(of_one(settings, frequency, algorithm, &of_both)?);
+                if is_spectrum_shown {
+                    let of_both = spectrum_of(settings, frequency, algorithm, &of_both);
+                    turning.extend(TurningRow::of(&of_both));
+                    spectrum.extend(of_both);
+                }
             }
         }
     }
@@ -46,10 +53,9 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
         ("summary".to_owned(), summary),
         ("course".to_owned(), course),
     ]);
-    if settings.show.contains(&Show::Spin) {
-        let (spectrum, turning) = spectra(settings, rows)?;
-        tables.insert("spectrum".into(), spectrum);
-        tables.insert("turning".into(), turning);
+    if is_spectrum_shown {
+        tables.insert("spectrum".into(), frame::of(spectrum)?);
+        tables.insert("turning".into(), frame::of(turning)?);
     }
     Ok(tables)
 }
@@ -76,62 +82,63 @@ struct TurningRow {
 /// From this frequency on turning is fast, in Hz: no body rolls so fast.
 const FAST_HZ: f64 = 20.0;
 
-/// Spectra of the angular velocity in the steps that count.
-fn spectra(settings: &Settings, rows: &DataFrame) -> Result<(DataFrame, DataFrame), Error> {
+impl TurningRow {
+    /// `None` of an empty spectrum.
+    fn of(spectrum: &[SpectrumRow]) -> Option<Self> {
+        let lowest = spectrum.first()?;
+        let above = |hz: f64| {
+            let above = spectrum.iter().filter(|row| row.turning_hz > hz);
+            above.map(|row| row.power_rad2_s2_per_hz).sum::<f64>() * lowest.turning_hz
+        };
+        Some(Self {
+            case: lowest.case.clone(),
+            algorithm: lowest.algorithm.clone(),
+            power_rad2_s2: above(0.0),
+            power_above_20_hz_rad2_s2: above(FAST_HZ),
+        })
+    }
+}
+
+/// The spectrum of the angular velocity in the steps that count, of one algorithm at one frequency.
+fn spectrum_of(
+    settings: &Settings,
+    frequency: u32,
+    algorithm: &str,
+    steps: &DataFrame,
+) -> Vec<SpectrumRow> {
     const AXES: [&str; 3] = [
         "angular_velocity_x_rad_s",
         "angular_velocity_y_rad_s",
         "angular_velocity_z_rad_s",
     ];
-    let (mut spectrum, mut turning) = (Vec::new(), Vec::new());
-    for &frequency in &settings.frequencies_hz {
-        let [from, to] = settings.measured_steps(frequency).map(f64::from);
-        for algorithm in &settings.algorithms {
-            let case = Settings::case(frequency);
-            // By seed, and in it by axis.
-            let mut turns = BTreeMap::<String, [Vec<f64>; 3]>::new();
-            for row in rows_of(rows, &case, algorithm) {
-                let step = row.number("step").unwrap_or_default();
-                if from <= step && step < to {
-                    let of_seed = turns.entry(row.text("seed")).or_default();
-                    for (values, axis) in of_seed.iter_mut().zip(AXES) {
-                        values.push(row.number(axis).unwrap_or_default());
-                    }
-                }
+    let [from, to] = settings.measured_steps(frequency).map(f64::from);
+    // By seed, and in it by axis.
+    let mut turns = BTreeMap::<String, [Vec<f64>; 3]>::new();
+    for row in rows(steps) {
+        let step = row.number("step").unwrap_or_default();
+        if from <= step && step < to {
+            let of_seed = turns.entry(row.text("seed")).or_default();
+            for (values, axis) in of_seed.iter_mut().zip(AXES) {
+                values.push(row.number(axis).unwrap_or_default());
             }
-            let spectra = turns.values().flatten();
-            let spectra: Vec<_> = spectra
-                .map(|values| power_spectrum(values, 1.0 / f64::from(frequency)))
-                .collect();
-            let frequencies = spectra.first().into_iter().flatten().enumerate();
-            let of_one: Vec<_> = frequencies
-                .map(|(i, (turning_hz, _))| {
-                    let powers = spectra.iter().filter_map(|s| s.get(i));
-                    let total = powers.map(|(_, power)| power).sum::<f64>();
-                    SpectrumRow {
-                        case: case.clone(),
-                        algorithm: algorithm.clone(),
-                        turning_hz: *turning_hz,
-                        power_rad2_s2_per_hz: total / turns.len() as f64,
-                    }
-                })
-                .collect();
-            if let Some(lowest) = of_one.first() {
-                let above = |hz: f64| {
-                    let above = of_one.iter().filter(|row| row.turning_hz > hz);
-                    above.map(|row| row.power_rad2_s2_per_hz).sum::<f64>() * lowest.turning_hz
-                };
-                turning.push(TurningRow {
-                    power_rad2_s2: above(0.0),
-                    power_above_20_hz_rad2_s2: above(FAST_HZ),
-                    case,
-                    algorithm: algorithm.clone(),
-                });
-            }
-            spectrum.extend(of_one);
         }
     }
-    Ok((frame::of(spectrum)?, frame::of(turning)?))
+    let spectra = turns.values().flatten();
+    let spectra: Vec<_> = spectra
+        .map(|values| power_spectrum(values, 1.0 / f64::from(frequency)))
+        .collect();
+    let frequencies = spectra.first().into_iter().flatten().enumerate();
+    let mean = frequencies.map(|(i, (turning_hz, _))| {
+        let powers = spectra.iter().filter_map(|s| s.get(i));
+        let total = powers.map(|(_, power)| power).sum::<f64>();
+        SpectrumRow {
+            case: Settings::case(frequency),
+            algorithm: algorithm.into(),
+            turning_hz: *turning_hz,
+            power_rad2_s2_per_hz: total / turns.len() as f64,
+        }
+    });
+    mean.collect()
 }
 
 /// Times of steps with a query.
