@@ -46,7 +46,11 @@ impl ExactSolid {
         let solid = solid(mesh, sign, &grid)?;
         let shown = solid.mesh.into_owned();
         // Winding numbers are those of the closed surface, with what is hidden within the solid.
-        let closed = surface(mesh, sign, &grid, &mut Repairs::default())?.into_owned();
+        let closed = if solid.is_closed {
+            shown.clone()
+        } else {
+            surface(mesh, sign, &grid, &mut Repairs::default())?.into_owned()
+        };
         let inside = if solid.repairs.left_open {
             Inside::Generalized(SolidAngle::of(Cow::Owned(closed)))
         } else {
@@ -157,7 +161,7 @@ mod tests {
         assert_eq!(apart.parts().len(), 2);
         assert!(!apart.contains(DVec3::X * 1.5));
         let one = of_two(0.5);
-        assert!(one.repairs().hidden_faces > 0);
+        assert!(one.repairs().united);
         // In both balls, and deep in what they are together.
         let depth = one.penetration(DVec3::X * 0.25, 0).penetration_m;
         assert!((depth - 0.94).abs() < 0.05, "{depth}");

@@ -37,6 +37,43 @@ pub fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
     a + ab * (vb * inverse) + ac * (vc * inverse)
 }
 
+/// How far two triangles that do not cross are apart, and the way from the first to the second.
+pub(crate) fn distance(p: [DVec3; 3], q: [DVec3; 3]) -> (f64, DVec3) {
+    let from_corners = p.map(|v| closest_point(q, v) - v);
+    let to_corners = q.map(|v| v - closest_point(p, v));
+    let edges = |[a, b, c]: [DVec3; 3]| [(a, b), (b, c), (c, a)];
+    let between_edges = edges(p)
+        .into_iter()
+        .flat_map(|e| edges(q).map(|f| between_segments(e, f)));
+    let ways = from_corners.into_iter().chain(to_corners);
+    let shortest = ways
+        .chain(between_edges)
+        .min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    let way = shortest.unwrap_or(DVec3::ZERO);
+    (way.length(), way)
+}
+
+/// The shortest way from one segment to another (Ericson, Real-Time Collision Detection, 5.1.9), both
+/// longer than nothing.
+fn between_segments((p1, q1): (DVec3, DVec3), (p2, q2): (DVec3, DVec3)) -> DVec3 {
+    let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
+    let (a, e, f) = (d1.dot(d1), d2.dot(d2), d2.dot(r));
+    let (b, c) = (d1.dot(d2), d1.dot(r));
+    let parallel = a * e - b * b;
+    let s = if parallel > 0.0 {
+        ((b * f - c * e) / parallel).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let t = (b * s + f) / e;
+    let (s, t) = match t {
+        t if t < 0.0 => ((-c / a).clamp(0.0, 1.0), 0.0),
+        t if t > 1.0 => (((b - c) / a).clamp(0.0, 1.0), 1.0),
+        t => (s, t),
+    };
+    p2 + d2 * t - (p1 + d1 * s)
+}
+
 /// Of the tetrahedron between a triangle and a point, in m³.
 pub(crate) fn signed_volume(corners: [DVec3; 3], point: DVec3) -> f64 {
     let [a, b, c] = corners.map(|v| v - point);
@@ -54,6 +91,29 @@ mod tests {
     }
 
     proptest! {
+        /// No two sampled points of two triangles are closer, and the way leads from one to the other.
+        #[test]
+        fn the_distance_of_triangles_is_the_smallest(
+            p in prop::array::uniform3(vector()), q in prop::array::uniform3(vector()),
+        ) {
+            let q = q.map(|v| v + DVec3::X * 4.5);
+            let (distance, way) = super::distance(p, q);
+            let points = |[a, b, c]: [DVec3; 3]| {
+                let at = move |i: i32, j: i32| {
+                    a + (b - a) * (f64::from(i) / 8.0) + (c - a) * (f64::from(j) / 8.0)
+                };
+                (0..=8).flat_map(move |i| (0..=8 - i).map(move |j| at(i, j)))
+            };
+            for a in points(p) {
+                for b in points(q) {
+                    prop_assert!(distance <= a.distance(b) + 1e-12);
+                }
+            }
+            let least = points(p).map(|a| closest_point(q, a).distance(a)).fold(f64::MAX, f64::min);
+            prop_assert!(distance <= least + 1e-12 && distance >= 0.5 * least - 1.0);
+            prop_assert!((way.length() - distance).abs() < 1e-12);
+        }
+
         /// No sampled point of the triangle is closer, and the point lies in the triangle.
         #[test]
         fn the_closest_point_is_closest(t in prop::array::uniform3(vector()), p in vector()) {

@@ -132,18 +132,26 @@ impl<'m> Lines<'m> {
 
     /// How often the triangles that `counts` names go around the point.
     pub(crate) fn winding(&self, point: DVec3, counts: impl Fn(u32) -> bool) -> i32 {
+        let mut winding = 0;
+        self.for_each_crossing(point, |triangle, change| {
+            if counts(triangle) {
+                winding += change;
+            }
+        });
+        winding
+    }
+
+    /// Calls `visit` with each triangle that the line to the point from -x passes, and with what it
+    /// adds to the winding number.
+    pub(crate) fn for_each_crossing(&self, point: DVec3, mut visit: impl FnMut(u32, i32)) {
         let [y, z] = self.bin_of(point);
         let bin = z * self.dims[0] + y;
-        let triangles = &self.triangles[self.starts[bin] as usize..self.starts[bin + 1] as usize];
-        let passed = |&t: &u32| {
-            let (x, change) = crossing(self.mesh.corners(t as usize), [point.y, point.z])?;
-            (x <= point.x).then_some(change)
-        };
-        triangles
-            .iter()
-            .filter(|t| counts(**t))
-            .filter_map(passed)
-            .sum()
+        for &t in &self.triangles[self.starts[bin] as usize..self.starts[bin + 1] as usize] {
+            match crossing(self.mesh.corners(t as usize), [point.y, point.z]) {
+                Some((x, change)) if x <= point.x => visit(t, change),
+                _ => {}
+            }
+        }
     }
 
     fn for_each_bin(&self, triangle: usize, mut visit: impl FnMut(usize)) {

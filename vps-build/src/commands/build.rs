@@ -274,6 +274,8 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         closed_holes,
         added_faces,
         hidden_faces,
+        united,
+        left_overlapping,
         left_open: _,
     } = *repairs;
     let mut done = Vec::new();
@@ -293,6 +295,12 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         &format!("{{}} hole(s) closed with {added_faces} faces"),
     );
     tell(hidden_faces, "{} face(s) within the solid removed");
+    if united {
+        done.push("parts that overlap or touch joined".into());
+    }
+    if left_overlapping {
+        done.push("parts overlap still, depths near faces within the solid are too small".into());
+    }
     if done.is_empty() {
         return way.into();
     }
@@ -336,6 +344,8 @@ fn for_machines(
         "added_faces": repairs.added_faces,
         "hidden_faces": repairs.hidden_faces,
         "left_open": repairs.left_open,
+        "united": repairs.united,
+        "left_overlapping": repairs.left_overlapping,
         "seconds": seconds,
     })
 }
