@@ -1,21 +1,30 @@
 use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelmap, VoxelmapError};
 
 use crate::bends::bends;
+use crate::bvh::Bvh;
 use crate::distance::{Exact, by_gradient_walk};
 use crate::layers::layers;
 use crate::mass::{mass_of_field, mass_of_mesh};
 use crate::solid::{Repairs, Sign, Solid, solid};
 use crate::sparse::{Coding, Source, Tolerance, sparse};
+use crate::thin_walls::ThinWalls;
 use crate::{Mesh, MeshError, cluster, sample};
 
 /// How fine the voxels are.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Resolution {
     /// Edge of a voxel in metres.
     VoxelSize(f64),
     /// Voxels along the longest side of the mesh.
     VoxelsAlongLongest(u32),
+    /// As [`VoxelsAlongLongest(100)`](Self::VoxelsAlongLongest), and finer where walls are thinner
+    /// than such a voxel, as far as the memory limit allows (see [`ThinWalls`]).
+    #[default]
+    Auto,
 }
+
+/// Voxels along the longest side where no wall is thin.
+const AUTO_VOXELS: u32 = 100;
 
 /// How many points a pointshell gets (section 2.1.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,10 +119,11 @@ pub struct BuildOptions {
 }
 
 impl Default for BuildOptions {
-    /// 100 voxels along the longest side with a margin of 4, 10 000 points, K = 4, distances.
+    /// 100 voxels along the longest side, or more for thin walls, with a margin of 4, 10 000 points,
+    /// K = 4, distances.
     fn default() -> Self {
         Self {
-            resolution: Resolution::VoxelsAlongLongest(100),
+            resolution: Resolution::Auto,
             margin: 4,
             points: PointCount::About(10_000),
             branching: 4,
@@ -212,6 +222,8 @@ pub enum BuildError {
 /// A step of a build, told to whoever shows progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
+    /// The boundary of the solid.
+    Solid,
     /// Surface voxels, fill and layers.
     Voxels,
     /// Distances.
@@ -242,6 +254,8 @@ pub struct Built {
     pub asset: Asset<'static>,
     /// How the mesh was made a solid.
     pub repairs: Repairs,
+    /// What is thinner than a voxel.
+    pub thin_walls: ThinWalls,
 }
 
 /// Makes voxelmap, pointshell, tree and mass properties of a mesh; `on_stage` hears of every step.
@@ -258,9 +272,18 @@ pub fn build(
         return Err(BuildError::Branching(options.branching));
     }
     let points = most_points(mesh, options.points)?;
-    let grid = grid(mesh, options, points)?;
+    let first_grid = grid(mesh, options, points)?;
+    on_stage(Stage::Solid);
+    let mut solid = solid(mesh, options.sign, &first_grid)?;
     on_stage(Stage::Voxels);
-    let solid = solid(mesh, options.sign, &grid)?;
+    let mut grid = first_grid;
+    let bvh = Bvh::new(&solid.mesh);
+    if options.resolution == Resolution::Auto
+        && let Some(finer) = finer_grid(mesh, &solid.mesh, &bvh, &grid, options, points)?
+    {
+        grid = finer;
+        solid = solid.on(mesh, options.sign, &grid)?;
+    }
     on_stage(Stage::Distances);
     let voxelmap = voxelmap(&solid, grid, options)?;
     let mass = if solid.is_closed {
@@ -272,6 +295,10 @@ pub fn build(
     let samples = sample::sample(&solid.mesh, options.points, &voxelmap);
     on_stage(Stage::Tree);
     let tree = cluster::build_tree(&samples, options.branching as usize, options.clustering)?;
+    let areas = samples.areas.iter().map(|&area| f64::from(area));
+    let points: Vec<_> = samples.positions.iter().copied().zip(areas).collect();
+    let voxel_size = f64::from(grid.voxel_size());
+    let thin_walls = ThinWalls::of(&solid.mesh, &bvh, &points, voxel_size, Some(&voxelmap));
     Ok(Built {
         asset: Asset {
             voxelmap,
@@ -279,7 +306,42 @@ pub fn build(
             mass,
         },
         repairs: solid.repairs,
+        thin_walls,
     })
+}
+
+/// How many points thin walls are looked for at before there is a pointshell, about.
+const WALL_SAMPLES: f64 = 10_000.0;
+
+/// The grid for the thin walls of a solid, if there are some: as fine as they need, or as memory
+/// allows.
+fn finer_grid(
+    mesh: &Mesh,
+    solid: &Mesh,
+    bvh: &Bvh,
+    coarse: &Grid,
+    options: &BuildOptions,
+    points: f64,
+) -> Result<Option<Grid>, BuildError> {
+    let samples = sample::spread(solid, (solid.area() / WALL_SAMPLES).sqrt());
+    let places: Vec<_> = samples.points.into_iter().map(|p| (p, 1.0)).collect();
+    let coarsest = f64::from(coarse.voxel_size());
+    let walls = ThinWalls::of(solid, bvh, &places, coarsest, None);
+    let Some(mut size) = walls.sufficient_voxel_m else {
+        return Ok(None);
+    };
+    while size < coarsest {
+        let options = BuildOptions {
+            resolution: Resolution::VoxelSize(size),
+            ..options.clone()
+        };
+        match grid(mesh, &options, points) {
+            Ok(grid) => return Ok(Some(grid)),
+            Err(BuildError::Memory { .. }) => size *= 1.1,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(None)
 }
 
 /// How many points there may be.
@@ -318,6 +380,7 @@ pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<G
         Resolution::VoxelSize(size) => size,
         Resolution::VoxelsAlongLongest(0) => return Err(BuildError::NoVoxels),
         Resolution::VoxelsAlongLongest(n) => extents.max_element() / f64::from(n),
+        Resolution::Auto => extents.max_element() / f64::from(AUTO_VOXELS),
     };
     if !(size > 0.0 && size.is_finite()) {
         return Err(BuildError::VoxelSize(size));

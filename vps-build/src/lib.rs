@@ -22,6 +22,7 @@
 //! | what is wrong with it | [`Health`] | |
 //! | how deep a point is in it, exactly | [`ExactSolid`] | |
 //! | a solid from any mesh | `solid`, `winding`, `solid_angle` | |
+//! | walls thinner than a voxel | [`ThinWalls`] | |
 //! | surface voxels, inside, outside | `places` | 2.1.1 |
 //! | layers | `layers` | 2.1.1 |
 //! | closest points and distances | `bvh`, `distance` | 2.1.1 |
@@ -57,6 +58,7 @@ mod sat;
 mod solid;
 mod solid_angle;
 mod sparse;
+mod thin_walls;
 mod triangle;
 mod winding;
 
@@ -72,4 +74,5 @@ pub use mass::mass_properties;
 pub use mesh::{Mesh, MeshError};
 pub use read::{Fault, MeshFormat, ReadError, parse_mesh, read_mesh};
 pub use solid::{Repairs, Sign};
+pub use thin_walls::ThinWalls;
 pub use triangle::closest_point;

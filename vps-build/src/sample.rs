@@ -156,7 +156,7 @@ fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
 
 /// Points no closer than `spacing` to each other, but for those on the two sides of a thin wall;
 /// from a lattice of voxels smaller than the spacing by [`ALPHA`].
-fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
+pub(crate) fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
     let size = spacing / ALPHA;
     let origin = mesh.bounds().0;
     let mut kept = Spaced::new(spacing);
@@ -193,9 +193,9 @@ const TRIANGLES_AT_ONCE: usize = 1 << 14;
 const OPPOSED: f64 = -0.5;
 
 /// Points that keep a distance.
-struct Spaced {
+pub(crate) struct Spaced {
     spacing: f64,
-    points: Vec<DVec3>,
+    pub(crate) points: Vec<DVec3>,
     /// Of the triangles the points lie on.
     normals: Vec<DVec3>,
     cells: Cells,

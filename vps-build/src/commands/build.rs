@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use vps_build::{
     BuildOptions, Built, ClosestPoints, Clustering, Density, Encoding, PointCount, Repairs,
-    Resolution, Sign, Stage, build, read_mesh, write_asset,
+    Resolution, Sign, Stage, ThinWalls, build, read_mesh, write_asset,
 };
 use vps_core::encode;
 
@@ -31,9 +31,9 @@ pub(crate) struct BuildArgs {
     /// Edge of a voxel in metres, after scaling
     #[arg(long, conflicts_with = "voxels", value_name = "METRES")]
     voxel_size: Option<f64>,
-    /// Voxels along the longest side
-    #[arg(long, default_value_t = 100)]
-    voxels: u32,
+    /// Voxels along the longest side, or `auto`: 100, and more if walls are thinner than a voxel
+    #[arg(long, default_value = "auto", value_parser = voxels)]
+    voxels: Resolution,
     /// Outer layers of voxels around the mesh
     #[arg(long, default_value_t = 4)]
     margin: u32,
@@ -129,12 +129,22 @@ enum SignName {
     Fill,
 }
 
+fn voxels(word: &str) -> Result<Resolution, String> {
+    if word == "auto" {
+        return Ok(Resolution::Auto);
+    }
+    let count = word.parse();
+    count
+        .map(Resolution::VoxelsAlongLongest)
+        .map_err(|_| "a whole number or `auto`".into())
+}
+
 impl BuildArgs {
     fn options(&self) -> BuildOptions {
         BuildOptions {
             resolution: match self.voxel_size {
                 Some(size) => Resolution::VoxelSize(size),
-                None => Resolution::VoxelsAlongLongest(self.voxels),
+                None => self.voxels,
             },
             margin: self.margin,
             points: match self.spacing {
@@ -187,6 +197,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
     let stages = Mutex::new(vec![("read_s", start)]);
     let on_stage = |stage| {
         let name = match stage {
+            Stage::Solid => "solid_s",
             Stage::Voxels => "voxels_s",
             Stage::Distances => "distances_s",
             Stage::Points => "points_s",
@@ -197,6 +208,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
         }
         progress.inc(1);
         progress.set_message(match stage {
+            Stage::Solid => "finding the boundary of the solid",
             Stage::Voxels => "filling voxels",
             Stage::Distances => "measuring distances",
             Stage::Points => "spreading points",
@@ -230,7 +242,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
 
 /// A bar with a step for every stage; draws nothing when standard error is not a terminal.
 fn progress(hidden: bool) -> ProgressBar {
-    let progress = ProgressBar::new(5);
+    let progress = ProgressBar::new(6);
     if hidden {
         progress.set_draw_target(ProgressDrawTarget::hidden());
     }
@@ -243,20 +255,42 @@ fn progress(hidden: bool) -> ProgressBar {
 }
 
 fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -> String {
-    let Built { asset, repairs } = built;
+    let Built { asset, .. } = built;
     let (map, tree) = (&asset.voxelmap, &asset.tree);
     let [x, y, z] = map.grid().dims();
     let kib = |bytes: usize| bytes.div_ceil(1024);
     format!(
         "{}: {triangles} triangles, {x} x {y} x {z} voxels of {:.6} m in {} KiB, {} points and {} \
-         levels in {} KiB, {seconds:.2} s\nsign: {}\n",
+         levels in {} KiB, {seconds:.2} s\nsign: {}\n{}",
         args.output.display(),
         map.grid().voxel_size(),
         kib(map.store().byte_len()),
         tree.point_count(),
         tree.level_count(),
         kib(tree.byte_len()),
-        sign(args.sign, repairs),
+        sign(args.sign, &built.repairs),
+        thin_walls(&built.thin_walls, map.grid().voxel_size()),
+    )
+}
+
+/// What is to be said of thin walls, as a line; nothing where there are none.
+fn thin_walls(walls: &ThinWalls, voxel_size: f32) -> String {
+    let Some(enough) = walls.sufficient_voxel_m else {
+        return String::new();
+    };
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let lost = if walls.lost_share > 0.0 {
+        format!(
+            "; of {} of the surface the middle of the wall is outside",
+            percent(walls.lost_share)
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        "thin walls: {} of the surface stands for walls thinner than a voxel of {voxel_size:.6} \
+         m{lost}: --voxel-size {enough:.3e} or --voxels auto would do\n",
+        percent(walls.share),
     )
 }
 
@@ -323,7 +357,11 @@ fn for_machines(
     built: &Built,
     seconds: f64,
 ) -> serde_json::Value {
-    let Built { asset, repairs } = built;
+    let Built {
+        asset,
+        repairs,
+        thin_walls,
+    } = built;
     let (map, tree) = (&asset.voxelmap, &asset.tree);
     json!({
         "file": args.output,
@@ -346,6 +384,9 @@ fn for_machines(
         "left_open": repairs.left_open,
         "united": repairs.united,
         "left_overlapping": repairs.left_overlapping,
+        "thin_share": thin_walls.share,
+        "lost_share": thin_walls.lost_share,
+        "sufficient_voxel_m": thin_walls.sufficient_voxel_m,
         "seconds": seconds,
     })
 }

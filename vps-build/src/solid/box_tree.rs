@@ -49,7 +49,8 @@ impl BoxTree {
         let first_leaf = (1 << levels) - 1;
         for leaf in 0..1 << levels {
             let items = tree.leaf(leaf).iter();
-            tree.nodes[first_leaf + leaf] = items.fold(Cuboid::EMPTY, |all, item| all.with(&item.0));
+            tree.nodes[first_leaf + leaf] =
+                items.fold(Cuboid::EMPTY, |all, item| all.with(&item.0));
         }
         for n in (0..first_leaf).rev() {
             tree.nodes[n] = tree.nodes[2 * n + 1].with(&tree.nodes[2 * n + 2]);
@@ -107,7 +108,9 @@ impl BoxTree {
                 continue;
             }
             let items = self.leaf(node - first_leaf).iter();
-            items.filter(|i| i.0.touches(&around)).for_each(|i| visit(i.1));
+            items
+                .filter(|i| i.0.touches(&around))
+                .for_each(|i| visit(i.1));
         }
     }
 
@@ -160,7 +163,11 @@ impl Cuboid {
     fn around(low: DVec3, high: DVec3) -> Self {
         let down = |c: f64| {
             let rounded = c as f32;
-            if f64::from(rounded) > c { rounded.next_down() } else { rounded }
+            if f64::from(rounded) > c {
+                rounded.next_down()
+            } else {
+                rounded
+            }
         };
         Self {
             low: Vec3::from_array(low.to_array().map(down)),

@@ -75,9 +75,8 @@ fn rims<'v>(vertices: &'v [DVec3], triangles: &[[u32; 3]]) -> Vec<Rim<'v>> {
             let last = path[path.len() - 1];
             let ways = leaving.get(&last.to).into_iter().flatten().copied();
             let free = ways.filter(|&i| i == first || !is_used[i]);
-            let next = free.min_by(|&a, &b| {
-                corner(&last, &open[a]).total_cmp(&corner(&last, &open[b]))
-            });
+            let next =
+                free.min_by(|&a, &b| corner(&last, &open[a]).total_cmp(&corner(&last, &open[b])));
             match next {
                 Some(next) if next != first => {
                     is_used[next] = true;

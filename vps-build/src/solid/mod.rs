@@ -163,6 +163,17 @@ fn sides(mesh: &Mesh, face: usize, offset: f64) -> [DVec3; 2] {
     [middle + normal, middle - normal]
 }
 
+impl<'m> Solid<'m> {
+    /// The same solid on another grid.
+    pub(crate) fn on(self, mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Self, BuildError> {
+        if !self.is_closed {
+            return solid(mesh, sign, grid);
+        }
+        let (places, _) = Places::by_winding(&self.mesh, grid);
+        Ok(Self { places, ..self })
+    }
+}
+
 /// The solid of a mesh whose holes stay open, by its generalised winding numbers.
 fn open_solid<'m>(
     surface: Cow<'m, Mesh>,

@@ -145,10 +145,7 @@ mod tests {
     use super::*;
 
     fn boxes(second_at: DVec3, size: [f64; 3]) -> Mesh {
-        let (a, b) = (
-            Mesh::cuboid([1.0; 3]).unwrap(),
-            Mesh::cuboid(size).unwrap(),
-        );
+        let (a, b) = (Mesh::cuboid([1.0; 3]).unwrap(), Mesh::cuboid(size).unwrap());
         let moved = b.vertices().iter().map(|&v| v + second_at);
         let vertices: Vec<_> = a.vertices().iter().copied().chain(moved).collect();
         let shifted = b.triangles().iter().map(|t| t.map(|v| v + 8));
@@ -206,7 +203,11 @@ mod tests {
             (v(1.0, -0.5, 0.0), false),
             (v(1.0, 0.5, 0.1), false),
         ] {
-            assert_eq!(of(&with(&[third]), &[[0, 1, 2], [0, 1, 3]]), meets, "{third}");
+            assert_eq!(
+                of(&with(&[third]), &[[0, 1, 2], [0, 1, 3]]),
+                meets,
+                "{third}"
+            );
         }
         // At a corner: through the other, onto it, beside it.
         for (b, c, meets) in [
@@ -215,7 +216,11 @@ mod tests {
             (v(-1.0, 0.5, 1.0), v(-0.5, 1.0, -1.0), false),
             (v(1.0, 0.5, 1.0), v(0.5, 1.0, 1.0), false),
         ] {
-            assert_eq!(of(&with(&[b, c]), &[[0, 1, 2], [0, 3, 4]]), meets, "{b} {c}");
+            assert_eq!(
+                of(&with(&[b, c]), &[[0, 1, 2], [0, 3, 4]]),
+                meets,
+                "{b} {c}"
+            );
         }
     }
 }

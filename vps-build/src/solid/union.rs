@@ -174,12 +174,7 @@ fn widened(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
 
 /// A boundary made of faces of a widened surface, its vertices back on the planes of the same faces of
 /// the surface.
-fn put_back(
-    boundary: &Mesh,
-    widened: &Mesh,
-    surface: &Mesh,
-    by: f64,
-) -> Result<Mesh, NoUnion> {
+fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
     // What 64 bits leave of a vertex that lies on a face.
     let near = 1e-5 * by;
     let tree = BoxTree::new(widened, near);
