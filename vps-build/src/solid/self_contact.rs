@@ -71,14 +71,21 @@ fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
 fn do_meet(mesh: &Mesh, a: u32, b: u32) -> bool {
     let (s, t) = (mesh.triangles()[a as usize], mesh.triangles()[b as usize]);
     let (p, q) = (mesh.corners(a as usize), mesh.corners(b as usize));
-    let common: Vec<_> = shared(s, t).collect();
-    match common[..] {
-        [] => edges(p).any(|e| pierces(e, q)) || edges(q).any(|e| pierces(e, p)) || overlap(p, q),
-        [(i, j)] => {
-            let (e, f) = (opposite(p, i), opposite(q, j));
-            pierces(e, q) || pierces(f, p) || overlap(p, q)
+    let mut common = shared(s, t);
+    match (common.next(), common.next()) {
+        (None, _) => {
+            edges(p).any(|e| pierces(e, q))
+                || edges(q).any(|e| pierces(e, p))
+                || q.iter().all(|&v| side(p, v) == 0.0) && overlap(p, q)
         }
-        _ => overlap(p, q),
+        (Some((i, j)), None) => {
+            let (e, f) = (opposite(p, i), opposite(q, j));
+            pierces(e, q)
+                || pierces(f, p)
+                || f.iter().all(|&v| side(p, v) == 0.0) && overlap(p, q)
+        }
+        // Signs of what is shared are known, and take the longest to tell from nothing.
+        (Some((_, j)), Some((_, k))) => side(p, q[3 - j - k]) == 0.0 && overlap(p, q),
     }
 }
 
@@ -114,9 +121,6 @@ fn pierces([from, to]: [DVec3; 2], t: [DVec3; 3]) -> bool {
 
 /// Whether two triangles in one plane share some area.
 fn overlap(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
-    if !q.iter().all(|&v| side(p, v) == 0.0) {
-        return false;
-    }
     let [a, b, c] = p;
     let normal = (b - a).cross(c - a).abs();
     let axis = normal.max_position();
