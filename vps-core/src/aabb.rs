@@ -1,4 +1,4 @@
-use glamx::Vec3;
+use glamx::{Mat3, Pose3, Vec3};
 
 /// An axis-aligned box, its corners in metres in the frame of whatever it bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,17 @@ impl Aabb {
     #[inline]
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
+    }
+
+    /// Whether all of another box lies in this one; `to_this` takes its coordinates to those of this
+    /// one.
+    pub fn contains_box(&self, other: &Self, to_this: &Pose3) -> bool {
+        let half = other.extents() * 0.5;
+        let center = to_this.transform_point(other.center());
+        let axes = Mat3::from_quat(to_this.rotation);
+        let reach =
+            axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
+        (center - reach).cmpge(self.min).all() && (center + reach).cmple(self.max).all()
     }
 
     /// Distance in metres from `point` to the box, 0 inside it.

@@ -24,7 +24,9 @@ impl<'q> Body<'q, Trilinear<'q>> {
 /// Which of two bodies is the shell in the field of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shells {
-    /// The one with fewer points, the first of two with as many: the paper's rule.
+    /// The one with fewer points, the first of two with as many: the paper's rule. But if the box of
+    /// one lies within that of the other, and so its surface may lie in the other's solid, it is that
+    /// one: no point of the other would be in it.
     #[default]
     FewerPoints,
     /// The first body.
@@ -162,13 +164,28 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     fn is_shell(&self) -> (bool, bool) {
         match self.shells {
             Shells::FewerPoints => {
-                let first = self.first.tree.point_count() <= self.second.tree.point_count();
+                let fewer = self.first.tree.point_count() <= self.second.tree.point_count();
+                let first = match self.is_within() {
+                    [false, true] => false,
+                    [true, false] => true,
+                    _ => fewer,
+                };
                 (first, !first)
             }
             Shells::First => (true, false),
             Shells::Second => (false, true),
             Shells::Both => (true, true),
         }
+    }
+
+    /// Whether the box of the first body lies within that of the second, and the other way round.
+    fn is_within(&self) -> [bool; 2] {
+        let [first, second] = [self.first.field.bounds(), self.second.field.bounds()];
+        let (to_first, to_second) = (self.second_to_first, self.second_to_first.inverse());
+        [
+            second.contains_box(&self.first.tree.bounds(), &to_second),
+            first.contains_box(&self.second.tree.bounds(), &to_first),
+        ]
     }
 
     fn deepest_within(&self, margin: f32) -> Option<PairContact> {
