@@ -231,10 +231,9 @@ impl Trilinear<'_> {
     }
 
     /// How far [`penetration`](DistanceField::penetration) at `point` may be from the exact one, in
-    /// metres: within the grid as much as
-    /// [`overestimate_bound_at`](Self::overestimate_bound_at), and more outside of it, where a
-    /// distance may be told too short: at the most by what a way around the border of the grid is
-    /// longer.
+    /// metres. Within the grid that is the
+    /// [`overestimate_bound_at`](Self::overestimate_bound_at) there; outside of it, where distances may
+    /// be told too short, it is more by what the way through the closest point of the grid is longer.
     pub fn error_bound_at(&self, point: Vec3) -> f32 {
         let way = self.0.grid().center_bounds().distance_outside(point);
         let sampled = self.sampled(Vectors::splat(point));
