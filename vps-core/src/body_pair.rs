@@ -24,8 +24,8 @@ impl<'q> Body<'q, Trilinear<'q>> {
 /// Which of two bodies is the shell in the field of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shells {
-    /// The one with fewer points, the first of two with as many: the paper's rule. But if the box of
-    /// one lies within that of the other, and so its surface may lie in the other's solid, it is that
+    /// The one with fewer points, the first of two with as many: the paper's rule. But if the smaller
+    /// body may lie within the box of the other, and so its surface in the other's solid, it is that
     /// one: no point of the other would be in it.
     #[default]
     FewerPoints,
@@ -164,12 +164,9 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     fn is_shell(&self) -> (bool, bool) {
         match self.shells {
             Shells::FewerPoints => {
-                let fewer = self.first.tree.point_count() <= self.second.tree.point_count();
-                let first = match self.is_within() {
-                    [false, true] => false,
-                    [true, false] => true,
-                    _ => fewer,
-                };
+                let first = self.first_is_within().unwrap_or_else(|| {
+                    self.first.tree.point_count() <= self.second.tree.point_count()
+                });
                 (first, !first)
             }
             Shells::First => (true, false),
@@ -178,14 +175,24 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         }
     }
 
-    /// Whether the box of the first body lies within that of the second, and the other way round.
-    fn is_within(&self) -> [bool; 2] {
-        let [first, second] = [self.first.field.bounds(), self.second.field.bounds()];
-        let (to_first, to_second) = (self.second_to_first, self.second_to_first.inverse());
-        [
-            second.contains_box(&self.first.tree.bounds(), &to_second),
-            first.contains_box(&self.second.tree.bounds(), &to_first),
-        ]
+    /// Whether it is the first body that may lie within the other; none if neither may.
+    fn first_is_within(&self) -> Option<bool> {
+        let (first, second) = (&self.first, &self.second);
+        // What lies within another body has no larger ball around it.
+        let [of_first, of_second] = [first.tree, second.tree].map(|t| t.clusters()[0].radius);
+        let first_is_smaller = of_first < of_second;
+        let may_be_within = if first_is_smaller {
+            let to_second = self.second_to_first.inverse();
+            second
+                .field
+                .bounds()
+                .may_hold(&first.tree.bounds(), &to_second)
+        } else {
+            let to_first = &self.second_to_first;
+            let bounds = first.field.bounds();
+            of_second < of_first && bounds.may_hold(&second.tree.bounds(), to_first)
+        };
+        may_be_within.then_some(first_is_smaller)
     }
 
     fn deepest_within(&self, margin: f32) -> Option<PairContact> {

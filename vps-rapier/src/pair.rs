@@ -94,7 +94,7 @@ impl<'s> Pair<'s> {
     /// of its points in it.
     fn back(&self, pos12: &Pose3) -> Option<&Way<'s>> {
         let back = self.back.as_ref()?;
-        (self.always_back || back.is_within(pos12)).then_some(back)
+        (self.always_back || back.may_be_within(pos12)).then_some(back)
     }
 
     /// Whether the shapes touch, `pos12` being the pose of the second in the frame of the first.

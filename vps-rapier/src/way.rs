@@ -98,11 +98,10 @@ impl<'s> Way<'s> {
         }
     }
 
-    /// Whether the box of the shell lies within that of the solid, so that all of it may lie in the
-    /// solid.
-    pub(crate) fn is_within(&self, pos12: &Pose3) -> bool {
+    /// Whether the shell as a whole may lie in the solid, going by the boxes.
+    pub(crate) fn may_be_within(&self, pos12: &Pose3) -> bool {
         let solid = with_field!(self, field => field.bounds());
-        solid.contains_box(&self.tree.bounds(), &self.shell_to_field(pos12))
+        solid.may_hold(&self.tree.bounds(), &self.shell_to_field(pos12))
     }
 
     /// Whether the shell touches the solid, `pos12` being the pose of the second shape in the frame

@@ -103,6 +103,10 @@ fn a_body_within_another_is_found_whichever_has_more_points() {
             for role in [Role::Mixed, Role::Voxelmap, Role::Pointshell, Role::Both] {
                 let inner = vps(mesh, of_small).with_role(role);
                 check("a VPS ball in a VPS block", &block, &inner, &pos12, 0.26);
+                // Turned, and just below the face.
+                let turn = Rotation::from_rotation_x(0.8) * Rotation::from_rotation_z(0.6);
+                let shallow = Pose::from_parts(Vector::new(0.05, 0.43, -0.1), turn);
+                check("a VPS ball below a face", &block, &inner, &shallow, 0.13);
             }
         }
     }

@@ -423,6 +423,11 @@ fn a_body_within_another_is_found() {
             assert!(touches && (depth - 0.23).abs() < error, "{depth}");
             // What is in the block goes up, the block goes down.
             assert!(if swapped { up > 0.0 } else { up < 0.0 }, "{up}");
+            // Turned, and just below the face.
+            let turn = vps_core::Quat::from_euler(glamx::EulerRot::XYZ, 0.8, 0.3, 0.6);
+            let shallow = Pose3::from_parts(Vec3::new(0.05, 0.31, -0.02), turn);
+            let (touches, depth, _) = pair(&outer, shallow);
+            assert!(touches && (depth - 0.17).abs() < error, "{depth}");
             let (touches, depth, up) = pair(&hollow, middle);
             assert!(!touches && (depth + 0.13).abs() < error, "{depth}");
             assert_eq!(up, 0.0);
