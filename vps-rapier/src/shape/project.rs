@@ -226,7 +226,7 @@ impl<'s> Search<'s> {
                 centers.z[lane] += side(first + lane, 2);
             }
             let penetrations = self.field.penetrations(&centers, &centers);
-            for lane in 0..LANES {
+            for (lane, penetration) in penetrations.into_iter().enumerate() {
                 let center = centers.get(lane);
                 let mut eighth = Part {
                     center,
@@ -235,7 +235,7 @@ impl<'s> Search<'s> {
                 };
                 let bounds = eighth.bounds();
                 let is_out = bounds.min.cmpgt(self.bounds.max).any();
-                if is_out || self.field.sign_radius(penetrations[lane]) > radius {
+                if is_out || self.field.sign_radius(penetration) > radius {
                     continue;
                 }
                 let closest = bounds.clamp(self.middle + self.to_point);
