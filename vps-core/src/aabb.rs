@@ -1,4 +1,4 @@
-use glamx::Vec3;
+use glamx::{Mat3, Pose3, Vec3};
 
 /// An axis-aligned box, its corners in metres in the frame of whatever it bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,22 @@ impl Aabb {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
+    /// Whether a body may lie within this box, given the smallest box around it in its own frame;
+    /// `to_this` takes coordinates of that frame to those of this box.
+    ///
+    /// Never false for one that does: it reaches all six sides of its box, and so at least as far along
+    /// any direction as the whole of the side that reaches furthest.
+    pub fn may_hold(&self, body: &Self, to_this: &Pose3) -> bool {
+        let half = body.extents() * 0.5;
+        let center = to_this.transform_point(body.center());
+        let axes = Mat3::from_quat(to_this.rotation);
+        let x = axes.x_axis.abs() * half.x;
+        let y = axes.y_axis.abs() * half.y;
+        let z = axes.z_axis.abs() * half.z;
+        let reach = x.max(y).max(z) * 2.0 - (x + y + z);
+        (center - reach).cmpge(self.min).all() && (center + reach).cmple(self.max).all()
+    }
+
     /// Distance in metres from `point` to the box, 0 inside it.
     #[inline]
     pub fn distance_outside(&self, point: Vec3) -> f32 {
@@ -52,5 +68,42 @@ impl Aabb {
     #[inline]
     pub fn extents(&self) -> Vec3 {
         self.max - self.min
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::Quat;
+
+    use super::*;
+
+    #[test]
+    fn what_lies_in_a_box_may() {
+        let bounds = Aabb {
+            min: Vec3::new(-1.0, -2.0, -0.5),
+            max: Vec3::new(1.0, 1.0, 0.5),
+        };
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        let (mut within, mut refused) = (0, 0);
+        for _ in 0..4000 {
+            let turn = Quat::from_scaled_axis(Vec3::new(random(), random(), random()) * 3.0);
+            let at = Vec3::new(random(), 2.0 * random(), 0.5 * random());
+            let pose = Pose3::from_parts(at, turn);
+            let points: [Vec3; 5] =
+                core::array::from_fn(|_| Vec3::new(random(), random(), random()) * 0.6);
+            let body = Aabb::of_points(points).unwrap();
+            let is_within = points
+                .iter()
+                .all(|&p| bounds.contains(pose.transform_point(p)));
+            let may = bounds.may_hold(&body, &pose);
+            assert!(may || !is_within);
+            within += i32::from(is_within);
+            refused += i32::from(!may);
+        }
+        assert!(within > 100 && refused > 100, "{within} {refused}");
     }
 }

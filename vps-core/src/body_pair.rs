@@ -24,7 +24,9 @@ impl<'q> Body<'q, Trilinear<'q>> {
 /// Which of two bodies is the shell in the field of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shells {
-    /// The one with fewer points, the first of two with as many: the paper's rule.
+    /// The one with fewer points, the first of two with as many: the paper's rule. But if the smaller
+    /// body may lie within the box of the other, and so its surface in the other's solid, it is that
+    /// one: no point of the other would be in it.
     #[default]
     FewerPoints,
     /// The first body.
@@ -162,13 +164,35 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     fn is_shell(&self) -> (bool, bool) {
         match self.shells {
             Shells::FewerPoints => {
-                let first = self.first.tree.point_count() <= self.second.tree.point_count();
+                let first = self.first_is_within().unwrap_or_else(|| {
+                    self.first.tree.point_count() <= self.second.tree.point_count()
+                });
                 (first, !first)
             }
             Shells::First => (true, false),
             Shells::Second => (false, true),
             Shells::Both => (true, true),
         }
+    }
+
+    /// Whether it is the first body that may lie within the other; none if neither may.
+    fn first_is_within(&self) -> Option<bool> {
+        let (first, second) = (&self.first, &self.second);
+        // What lies within another body has no larger ball around it.
+        let [of_first, of_second] = [first.tree, second.tree].map(|t| t.clusters()[0].radius);
+        let first_is_smaller = of_first < of_second;
+        let may_be_within = if first_is_smaller {
+            let to_second = self.second_to_first.inverse();
+            second
+                .field
+                .bounds()
+                .may_hold(&first.tree.bounds(), &to_second)
+        } else {
+            let to_first = &self.second_to_first;
+            let bounds = first.field.bounds();
+            of_second < of_first && bounds.may_hold(&second.tree.bounds(), to_first)
+        };
+        may_be_within.then_some(first_is_smaller)
     }
 
     fn deepest_within(&self, margin: f32) -> Option<PairContact> {

@@ -29,7 +29,8 @@ pub trait DistanceField {
     fn bounds(&self) -> Aabb;
 
     /// The largest difference in metres between [`penetration`](Self::penetration) and the exact
-    /// one, for points near the surface of the solid.
+    /// one, for points near the surface of the solid. Elsewhere it may be larger: for voxelmaps see
+    /// [`Trilinear::overestimate_bound_at`](crate::Trilinear::overestimate_bound_at).
     fn error_bound(&self) -> f32;
 
     /// The negative of the penetration: positive outside. For fields that need no normal.

@@ -167,17 +167,6 @@ impl Vectors {
         self.dot(self).sqrt()
     }
 
-    /// The same, at little cost if all are zero.
-    #[inline(always)]
-    pub(crate) fn length_if_any(self) -> f32x4 {
-        let square = self.dot(self);
-        if square.simd_gt(f32x4::ZERO).any() {
-            square.sqrt()
-        } else {
-            f32x4::ZERO
-        }
-    }
-
     #[inline(always)]
     pub(crate) fn times(self, factor: f32x4) -> Self {
         Self {

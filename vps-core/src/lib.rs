@@ -85,6 +85,7 @@ mod grid;
 mod lanes;
 mod linear_wrench;
 mod manifold;
+mod outside;
 mod query;
 mod sampling;
 #[cfg(feature = "alloc")]

@@ -4,7 +4,8 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::lanes::{Vectors, Voxels};
-use crate::{Aabb, Accuracy, Discs, DistanceField, LANES, Points, Voxelmap};
+use crate::outside::{Beyond, direction_beyond, penetration_beyond};
+use crate::{Aabb, Accuracy, Discs, DistanceField, Grid, LANES, Points, Voxelmap};
 
 /// Half the diagonal of a voxel, in voxels.
 const HALF_DIAGONAL: f32 = 0.866_025_4;
@@ -50,7 +51,8 @@ impl DistanceField for LocalPenetration<'_> {
         let inside = map.grid().bounds().clamp(point);
         let voxel = map.grid().voxel_at(inside);
         let to_center = map.grid().center(voxel) - inside;
-        normal.dot(to_center) + map.center_penetration(voxel) - point.distance(inside)
+        let at_border = normal.dot(to_center) + map.center_penetration(voxel);
+        penetration_beyond(point, inside, &map.solid(), at_border)
     }
 
     #[inline]
@@ -81,15 +83,18 @@ impl DistanceField for Linear<'_> {
         let inside = map.grid().bounds().clamp(point);
         let voxel = map.grid().voxel_at(inside);
         let from_center = (inside - map.grid().center(voxel)) / map.grid().voxel_size();
-        let along = gradient(map, voxel).dot(from_center);
-        map.center_penetration(voxel) + along - point.distance(inside)
+        let at_border = map.center_penetration(voxel) + gradient(map, voxel).dot(from_center);
+        penetration_beyond(point, inside, &map.solid(), at_border)
     }
 
     #[inline]
     fn inward_direction(&self, point: Vec3) -> Vec3 {
         let map = self.0;
-        let voxel = map.grid().voxel_at(map.grid().bounds().clamp(point));
-        gradient(map, voxel).normalize_or_zero()
+        let inside = map.grid().bounds().clamp(point);
+        let voxel = map.grid().voxel_at(inside);
+        let direction = gradient(map, voxel).normalize_or_zero();
+        let at_border = map.center_penetration(voxel);
+        direction_beyond(point, inside, &map.solid(), at_border, direction)
     }
 
     #[inline]
@@ -136,23 +141,29 @@ fn bound_by_voxel(map: &Voxelmap<'_>, center: Vec3, radius: f32, voxels_off: f32
     } else {
         accuracy.near_m
     };
-    // The exact penetration changes by no more than the way from the voxel's centre; and no point
-    // of the solid is closer than its box.
-    let by_voxel = stored + error + center.distance(grid.center(voxel));
-    let outside = map.solid().distance_outside(center);
+    let sampled_off = voxels_off * grid.voxel_size();
+    // The exact penetration changes by no more than the way from the voxel's centre; that at the
+    // closest points of the grid is no lower than outside.
+    let by_voxel = stored + error + inside.distance(grid.center(voxel));
     // At the border four times the error of a value is in the sum of eq. 5, and those of its
     // neighbours may be as far from it as three diagonals.
     let reach = 3.0 * SQRT_3 * grid.voxel_size() + 4.0 * accuracy.far_m;
-    let at_center = if outside > 0.0 {
-        by_voxel.min(-outside)
-    } else {
-        by_voxel
-    };
-    let at_most = at_center + radius;
-    let exact = f32x4::splat(at_most + voxels_off * grid.voxel_size());
-    Stored::new(accuracy, reach)
-        .of(exact, f32x4::splat(4.0))
-        .to_array()[0]
+    let stored = Stored::new(accuracy, reach);
+    let of = |exact: f32| stored.of(f32x4::splat(exact), f32x4::splat(4.0));
+    let by_way = of(by_voxel + radius + sampled_off);
+    if inside == center {
+        return by_way.to_array()[0];
+    }
+    // No point of the solid is closer than its box.
+    let by_box = of(radius - map.solid().distance_outside(center) + sampled_off);
+    let beyond = Beyond::new(
+        Vectors::splat(inside),
+        Vectors::splat(center - inside),
+        &map.solid(),
+    );
+    let at_border = f32x4::splat(by_voxel + sampled_off + 4.0 * accuracy.far_m);
+    let by_border = beyond.bounds(at_border, f32x4::splat(radius));
+    by_way.fast_min(by_box).fast_min(by_border).to_array()[0]
 }
 
 /// From the exact penetration to what is stored and sampled.
@@ -201,21 +212,61 @@ impl Trilinear<'_> {
         self.0.grid().voxel_size()
     }
 
+    /// The grid of the map.
+    #[inline]
+    pub fn grid(&self) -> &Grid {
+        self.0.grid()
+    }
+
+    /// How far around a point in the grid, given its penetration, the field has the same sign, in
+    /// metres: what is interpolated nowhere changes by more than √(r² + 3/4 s²) over a distance r, and
+    /// by the errors of values; 0 where that says nothing.
+    pub fn sign_radius(&self, penetration: f32) -> f32 {
+        let s = self.voxel_size();
+        // Around a place where it changes sign all values are near ones.
+        let error = self.value_error(penetration) + self.value_error(0.0);
+        let change = (penetration.abs() - error).max(0.0);
+        let square = (change * change - 0.75 * s * s).max(0.0);
+        f32x4::splat(square).sqrt().to_array()[0]
+    }
+
     /// How far [`penetration`](DistanceField::penetration) at `point` may be from the exact one, in
-    /// metres: the error bound of the field close to the surface, more far from it, and twice the
-    /// way to the grid more outside of the grid.
+    /// metres. Within the grid that is the
+    /// [`overestimate_bound_at`](Self::overestimate_bound_at) there; outside of it, where distances may
+    /// be told too short, it is more by what the way through the closest point of the grid is longer.
     pub fn error_bound_at(&self, point: Vec3) -> f32 {
-        let map = self.0;
-        let way = map.grid().center_bounds().distance_outside(point);
-        // Beyond the band no value around the point may be taken for a near one.
-        let reach = 2.0 * HALF_DIAGONAL * map.grid().voxel_size();
-        let depth = self.penetration(point, Vec3::ZERO) + way;
-        let beyond = if depth.abs() + reach > map.accuracy().band_m {
-            map.accuracy().far_m - map.accuracy().near_m
+        let way = self.0.grid().center_bounds().distance_outside(point);
+        let sampled = self.sampled(Vectors::splat(point));
+        let at_border = -sampled.values.to_array()[0];
+        let distance = self.signed_distance(point);
+        let short = if way > 0.0 {
+            way + at_border.max(0.0) - distance
         } else {
             0.0
         };
-        self.error_bound() + beyond + 2.0 * way
+        self.overestimate_bound_at(point) + short
+    }
+
+    /// How much further away than it is the solid may seem to be at `point`, in metres: the
+    /// [signed distance](DistanceField::signed_distance) is more than the exact one by no more than
+    /// this, anywhere. It is the [error bound](DistanceField::error_bound) of the field close to the
+    /// surface, and what values may be off more ([`Accuracy::far_m`]) beyond the narrow band; outside
+    /// of the grid that of the closest point in it.
+    pub fn overestimate_bound_at(&self, point: Vec3) -> f32 {
+        let sampled = self.sampled(Vectors::splat(point)).values.to_array()[0];
+        HALF_DIAGONAL * self.voxel_size() + self.value_error(sampled)
+    }
+
+    /// How far the values may be off that something is interpolated from.
+    fn value_error(&self, interpolated: f32) -> f32 {
+        let accuracy = self.0.accuracy();
+        // With one value beyond the band, what is made of it is no closer to zero than this.
+        let reach = SQRT_3 * self.voxel_size() + accuracy.far_m + accuracy.near_m;
+        if interpolated.abs() + reach <= accuracy.band_m {
+            accuracy.near_m
+        } else {
+            accuracy.far_m
+        }
     }
 
     /// What is interpolated at the points.
@@ -226,13 +277,25 @@ impl Trilinear<'_> {
         let (corners, between) = grid.cells_at(inside);
         let (values, slopes) = store.interpolated(corners, between);
         let sigma = f32x4::splat(self.0.sigma());
-        let off = points.minus(inside);
         Sampled {
             values: values * sigma,
             gradients: slopes.times(sigma * grid.per_metre()),
             corners,
-            outside: off.length_if_any(),
-            off,
+            inside,
+            way: points.minus(inside),
+        }
+    }
+
+    /// Penetrations at the points.
+    #[inline(always)]
+    fn penetrations_at(&self, points: Vectors) -> f32x4 {
+        let sampled = self.sampled(points);
+        let is_outside = sampled.way.dot(sampled.way).simd_gt(f32x4::ZERO);
+        if is_outside.any() {
+            let beyond = Beyond::new(sampled.inside, sampled.way, &self.0.solid());
+            is_outside.select(beyond.penetrations(sampled.values), sampled.values)
+        } else {
+            sampled.values
         }
     }
 
@@ -250,9 +313,13 @@ impl Trilinear<'_> {
     /// straight way from the centre to a point r voxels away, the slope changes at each face
     /// between voxels by no more than the bend, and there are no more than r / s + 1 of them along
     /// an axis; between faces it changes by the twist of the squares. Together the point has no
-    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends. Outside
-    /// of the grid all that holds for the closest points in it; since what is sampled falls with the
-    /// way to the grid, the linear function goes on to hold there, unless it falls faster.
+    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends. That is
+    /// for discs that do not leave the grid.
+    ///
+    /// The third is for what lies outside of the grid. There what is sampled is no more than at the
+    /// closest point of the grid, so the first holds; see [`Beyond::bounds`] for how it falls. And as
+    /// no point of the solid is closer than its box, nor is what is sampled, but for its error: at the
+    /// closest point of the grid, and further on since the distance of the box grows as fast there.
     #[inline(always)]
     fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
@@ -266,7 +333,7 @@ impl Trilinear<'_> {
         let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
         let gradients = sampled.gradients;
         let steepest = gradients.length();
-        let mut bent = at_center
+        let bent = at_center
             + discs.rise(gradients, steepest)
             + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
         let leaves = centers.room_in(&map.grid().center_bounds()).simd_lt(radii);
@@ -285,18 +352,23 @@ impl Trilinear<'_> {
         if is_in_grid {
             return is_near.select(bent.fast_min(by_way), by_way);
         }
-        // Outside of the grid the way to it is taken off, which is shorter by up to a radius.
-        let by_way = by_way - (sampled.outside - radii).fast_max(f32x4::ZERO);
-        let steeper = (steepest - 1.0).fast_max(f32x4::ZERO);
-        bent += gradients.dot(sampled.off) + (leaves & (steeper * (sampled.outside + radii)));
-        let out = is_near.select(bent.fast_min(by_way), by_way);
-        // No point of the solid is closer than its box.
+        let out = (is_near & !leaves).select(bent.fast_min(by_way), by_way);
+        let beyond = Beyond::new(sampled.inside, sampled.way, &map.solid());
+        let is_outside = beyond.is_outside();
+        if !is_outside.any() {
+            return out;
+        }
+        // What is interpolated changes by no more than the way and this.
+        let at_border = at_center + error + (MOST_SMOOTHED * s + accuracy.far_m);
+        let by_border = beyond.bounds(at_border, radii);
         let to_box = centers.minus(centers.clamped(&map.solid())).length();
         let by_box = bound.of(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
-        let is_outside = sampled.outside.simd_gt(f32x4::ZERO);
-        is_outside.select(by_box.fast_min(out), out)
+        is_outside.select(by_border.fast_min(by_box).fast_min(out), out)
     }
 }
+
+/// The most by which the smaller of √(r² + 3/4 s²) and √3 r is more than r, in voxels.
+const MOST_SMOOTHED: f32 = 0.448_3;
 
 /// Up to how many voxels from a cell its bend is known.
 const MOST_VOXELS: f32 = 7.0;
@@ -310,26 +382,25 @@ struct Sampled {
     gradients: Vectors,
     /// The lowest of the voxels around.
     corners: Voxels,
-    /// The way from the box in metres.
-    off: Vectors,
-    /// How long that is.
-    outside: f32x4,
+    /// Where these points are.
+    inside: Vectors,
+    /// From there to those asked for, in metres.
+    way: Vectors,
 }
 
 impl DistanceField for Trilinear<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
-        let sampled = self.sampled(Vectors::splat(point));
-        (sampled.values - sampled.outside).to_array()[0]
+        self.penetrations_at(Vectors::splat(point)).to_array()[0]
     }
 
     /// By differences of the interpolated field over a voxel on each side.
     #[inline]
     fn inward_direction(&self, point: Vec3) -> Vec3 {
         let map = self.0;
-        let point = Points::splat(map.grid().bounds().clamp(point));
+        let inside = map.grid().bounds().clamp(point);
         let step = map.grid().voxel_size();
-        let (mut after, mut before) = (point, point);
+        let (mut after, mut before) = (Points::splat(inside), Points::splat(inside));
         after.x[0] += step;
         after.y[1] += step;
         after.z[2] += step;
@@ -338,7 +409,12 @@ impl DistanceField for Trilinear<'_> {
         before.z[2] -= step;
         let [after, before] = [after, before].map(|p| self.penetrations(&p, &p));
         let slope = |axis: usize| after[axis] - before[axis];
-        Vec3::new(slope(0), slope(1), slope(2)).normalize_or_zero()
+        let direction = Vec3::new(slope(0), slope(1), slope(2)).normalize_or_zero();
+        if inside == point {
+            return direction;
+        }
+        let at_border = self.penetration(inside, Vec3::ZERO);
+        direction_beyond(point, inside, &map.solid(), at_border, direction)
     }
 
     #[inline]
@@ -359,8 +435,7 @@ impl DistanceField for Trilinear<'_> {
 
     #[inline(always)]
     fn penetrations(&self, points: &Points, _normals: &Points) -> [f32; LANES] {
-        let sampled = self.sampled((*points).into());
-        (sampled.values - sampled.outside).to_array()
+        self.penetrations_at((*points).into()).to_array()
     }
 
     #[inline(always)]

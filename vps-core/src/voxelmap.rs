@@ -82,14 +82,14 @@ pub enum VoxelmapError {
     /// An error bound means nothing.
     #[error("error bounds must be finite and not negative, near not above far: {0:?}")]
     Accuracy(Accuracy),
-    /// The solid must be inside of the grid.
-    #[error("the solid {0:?} is not inside of the grid")]
+    /// The solid must lie where values are interpolated.
+    #[error("the solid {0:?} does not lie between the outermost voxel centres of the grid")]
     Solid(Aabb),
 }
 
 impl<'a> Voxelmap<'a> {
     /// A map over `grid` with the values of `store`, each worth `sigma` metres; `solid` is a box
-    /// around the mesh the map was made from.
+    /// around the mesh the map was made from, and lies between the outermost voxel centres.
     ///
     /// `bends` says for each cell of 8 x 8 x 8 voxels (x first, then y, then z) how little the field
     /// bends in it and in the cells around it: in steps of s / 127, a bound on how much any value
@@ -131,7 +131,7 @@ impl<'a> Voxelmap<'a> {
         if !(near_m >= 0.0 && near_m <= far_m && far_m.is_finite() && band_m >= 0.0) {
             return Err(VoxelmapError::Accuracy(accuracy));
         }
-        let bounds = grid.bounds();
+        let bounds = grid.center_bounds();
         let tolerance = 0.01 * grid.voxel_size();
         let inside = (solid.min - bounds.min).min_element() >= -tolerance
             && (bounds.max - solid.max).min_element() >= -tolerance

@@ -112,7 +112,7 @@ impl QueryDispatcher for VpsDispatcher {
         let all = self.with_parry();
         Ok(match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let closest = pair.deepest(&core_pose(pos12), f32::INFINITY);
+                let closest = pair.closest(&core_pose(pos12), f32::INFINITY);
                 closest.map_or(Real::INFINITY, |c| real((-c.penetration).max(0.0)))
             }
             .into(),
@@ -131,7 +131,7 @@ impl QueryDispatcher for VpsDispatcher {
         let all = self.with_parry();
         Ok(match self.task(g1, g2)? {
             Task::Pair(pair) => pair
-                .deepest(&core_pose(pos12), core_real(prediction))
+                .closest(&core_pose(pos12), core_real(prediction))
                 .map(PairContact::to_parry),
             Task::PartsOfFirst(parts) => {
                 contact_composite_shape_shape(&all, pos12, parts, g2, prediction)
@@ -151,7 +151,7 @@ impl QueryDispatcher for VpsDispatcher {
     ) -> Result<ClosestPoints, Unsupported> {
         let all = self.with_parry();
         Ok(match self.task(g1, g2)? {
-            Task::Pair(pair) => match pair.deepest(&core_pose(pos12), core_real(max_dist)) {
+            Task::Pair(pair) => match pair.closest(&core_pose(pos12), core_real(max_dist)) {
                 Some(c) if c.penetration >= 0.0 => ClosestPoints::Intersecting,
                 Some(c) => {
                     let [point1, point2] = c.points.map(vector);

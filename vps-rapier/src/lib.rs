@@ -63,6 +63,7 @@ mod real;
 mod saved;
 mod shape;
 mod shape_field;
+mod surroundings;
 mod thickness;
 mod way;
 mod workspace;

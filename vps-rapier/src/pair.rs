@@ -13,8 +13,12 @@ use crate::{Manifolds, Role, Sampling, VpsShape};
 
 /// All ways to look at a pair that are needed for it.
 pub(crate) struct Pair<'s> {
-    /// One shell in the field of the other shape, or both.
-    ways: [Option<Way<'s>>; 2],
+    /// A shell in the field of the other shape.
+    first_way: Way<'s>,
+    /// The other shell in the other field.
+    back: Option<Way<'s>>,
+    /// Whether it is always looked at that way, too.
+    always_back: bool,
     /// The points of a shape of parry in the voxelmap of the other.
     probe: Option<Probe<'s>>,
 }
@@ -36,11 +40,15 @@ impl<'s> Pair<'s> {
         match (vps(g1), vps(g2)) {
             (None, None) => None,
             (Some(a), None) => Some(Self {
-                ways: [Some(Way::in_shape(a, g2, true)), None],
+                first_way: Way::in_shape(a, g2, true),
+                back: None,
+                always_back: false,
                 probe: Some(Probe::new(g2, a, false)),
             }),
             (None, Some(b)) => Some(Self {
-                ways: [Some(Way::in_shape(b, g1, false)), None],
+                first_way: Way::in_shape(b, g1, false),
+                back: None,
+                always_back: false,
                 probe: Some(Probe::new(g1, b, true)),
             }),
             (Some(a), Some(b)) => Some(Self::of_vps_shapes(a, b, sampling)),
@@ -61,37 +69,62 @@ impl<'s> Pair<'s> {
         let both = [a, b].iter().any(|s| s.role() == Role::Both)
             // Between the points of the shell there is room for what is thin; its own points find it.
             || is_free(a) && is_free(b) && field.thickness() < THICK * shell.spacing();
-        let back = both.then(|| Way::in_map(field, shell, sampling, !first_is_shell));
         Self {
-            ways: [
-                Some(Way::in_map(shell, field, sampling, first_is_shell)),
-                back,
-            ],
+            first_way: Way::in_map(shell, field, sampling, first_is_shell),
+            back: Some(Way::in_map(field, shell, sampling, !first_is_shell)),
+            always_back: both,
             probe: None,
         }
     }
 
-    fn ways(&self) -> impl Iterator<Item = &Way<'s>> {
-        self.ways.iter().flatten()
+    /// Those that are needed in any pose.
+    fn usual_ways(&self) -> impl Iterator<Item = &Way<'s>> {
+        let back = self.back.as_ref().filter(|_| self.always_back);
+        [Some(&self.first_way), back].into_iter().flatten()
+    }
+
+    /// Those that are needed in a pose.
+    fn ways(&self, pos12: &Pose3) -> impl Iterator<Item = &Way<'s>> {
+        [Some(&self.first_way), self.back(pos12)]
+            .into_iter()
+            .flatten()
+    }
+
+    /// The way back, if it is needed: what lies in the solid of the shell it is looked at with has none
+    /// of its points in it.
+    fn back(&self, pos12: &Pose3) -> Option<&Way<'s>> {
+        let back = self.back.as_ref()?;
+        (self.always_back || back.may_be_within(pos12)).then_some(back)
     }
 
     /// Whether the shapes touch, `pos12` being the pose of the second in the frame of the first.
     pub(crate) fn touches(&self, pos12: &Pose3) -> bool {
-        self.ways().any(|way| way.touches(pos12))
+        self.ways(pos12).any(|way| way.touches(pos12))
             || self.probe.as_ref().is_some_and(|p| p.touches(pos12))
     }
 
     /// The deepest contact up to `margin` metres away.
     pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
-        let by_shells = self.ways().filter_map(|way| way.deepest(pos12, margin));
+        let by_shells = self
+            .ways(pos12)
+            .filter_map(|way| way.deepest(pos12, margin));
         let deepest = by_shells.reduce(deeper);
-        let mut probed = Vec::new();
-        if let Some(probe) = &self.probe {
-            // What is further away than a point of the shell is not the deepest.
-            let least = deepest.map_or(margin, |d| -d.penetration);
-            probe.contacts(pos12, least, &mut probed);
-        }
+        // What is further away than a point of the shell is not the deepest.
+        let within = deepest.map_or(margin, |d| -d.penetration);
+        let probed = self.probe.as_ref().and_then(|p| p.deepest(pos12, within));
         deepest.into_iter().chain(probed).reduce(deeper)
+    }
+
+    /// The same, at its distance also where a voxelmap has a lower bound alone: for those who ask how
+    /// far shapes are apart.
+    pub(crate) fn closest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
+        let by_shells = self
+            .ways(pos12)
+            .filter_map(|way| way.closest(pos12, margin));
+        let closest = by_shells.reduce(deeper);
+        let within = closest.map_or(margin, |c| -c.penetration);
+        let probed = self.probe.as_ref().and_then(|p| p.closest(pos12, within));
+        closest.into_iter().chain(probed).reduce(deeper)
     }
 
     /// The deepest of all contacts up to `margin` metres away of which something is true. Looks at
@@ -107,7 +140,7 @@ impl<'s> Pair<'s> {
             probe.contacts(pos12, margin, &mut probed);
         }
         let by_shells = self
-            .ways()
+            .ways(pos12)
             .filter_map(|way| way.deepest_of(pos12, margin, is_wanted));
         let deepest = by_shells.chain(probed.into_iter().filter(is_wanted));
         deepest.reduce(deeper)
@@ -124,7 +157,7 @@ impl<'s> Pair<'s> {
     ) -> Option<f32> {
         let before = before?;
         let motion = |way: &Way<'_>| way.motion([before, pos12], normals);
-        Some(self.ways().map(motion).fold(0.0, f32::max))
+        Some(self.ways(pos12).map(motion).fold(0.0, f32::max))
     }
 
     /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of those of
@@ -138,7 +171,7 @@ impl<'s> Pair<'s> {
         before: &[[PackedFeatureId; 2]],
     ) -> Vec<PairContact> {
         let mut found = Vec::new();
-        for way in self.ways() {
+        for way in self.ways(pos12) {
             match manifolds {
                 Manifolds::Spread => way.manifold(pos12, margin, motion, before, &mut found),
                 Manifolds::Segments(level) => way.segments(pos12, margin, level, &mut found),
@@ -148,7 +181,7 @@ impl<'s> Pair<'s> {
         if let Some(probe) = &self.probe {
             probe.contacts(pos12, margin, &mut found);
         }
-        let has_more = found.len() > by_shells || self.ways[1].is_some();
+        let has_more = found.len() > by_shells || self.back(pos12).is_some();
         match manifolds {
             Manifolds::Spread => {
                 let mut kept = self.again(pos12, before, &found);
@@ -160,7 +193,7 @@ impl<'s> Pair<'s> {
                     keep_few_of_a_normal(contacts);
                 }
                 if let Some(kept) = kept
-                    && is_as_good(&kept, &found, STILL * self.size())
+                    && is_as_good(&kept, &found, STILL * smallest(self.ways(pos12)))
                 {
                     found = kept;
                 }
@@ -178,9 +211,9 @@ impl<'s> Pair<'s> {
 
     /// Lets contacts of one pair pull together where what is closest is not the way out.
     fn push_out_of_the_deep(&self, contacts: &mut Vec<PairContact>, pos12: &Pose3) {
-        if deepest(contacts) > DEEP * self.size() && are_opposed(contacts) {
+        if deepest(contacts) > DEEP * smallest(self.ways(pos12)) && are_opposed(contacts) {
             let push = self
-                .ways()
+                .ways(pos12)
                 .map(|way| way.push_on_first(pos12))
                 .sum::<Vec3>();
             if push != Vec3::ZERO {
@@ -199,7 +232,7 @@ impl<'s> Pair<'s> {
     ) -> Option<Vec<PairContact>> {
         let one = |&ids: &[PackedFeatureId; 2]| {
             let again = found.iter().find(|c| c.ids == ids).copied();
-            again.or_else(|| self.ways().find_map(|way| way.again(pos12, ids)))
+            again.or_else(|| self.ways(pos12).find_map(|way| way.again(pos12, ids)))
         };
         before.iter().map(one).collect()
     }
@@ -207,19 +240,26 @@ impl<'s> Pair<'s> {
     /// How finely the fields are sampled: the largest size of voxels in metres, 0 if exact.
     pub(crate) fn resolution(&self) -> f32 {
         let of_probe = self.probe.as_ref().map_or(0.0, Probe::resolution);
-        self.ways().map(Way::resolution).fold(of_probe, f32::max)
+        self.usual_ways()
+            .map(Way::resolution)
+            .fold(of_probe, f32::max)
     }
 
     /// The size of the smallest shell in metres.
     pub(crate) fn size(&self) -> f32 {
-        self.ways().map(Way::size).fold(f32::INFINITY, f32::min)
+        smallest(self.usual_ways())
     }
 
     /// How far what is found may be off in metres, anywhere.
     pub(crate) fn error(&self) -> f32 {
         let of_probe = self.probe.as_ref().map_or(0.0, Probe::error);
-        self.ways().map(Way::error).fold(of_probe, f32::max)
+        self.usual_ways().map(Way::error).fold(of_probe, f32::max)
     }
+}
+
+/// The size of the smallest shell in metres.
+fn smallest<'w>(ways: impl Iterator<Item = &'w Way<'w>>) -> f32 {
+    ways.map(Way::size).fold(f32::INFINITY, f32::min)
 }
 
 fn deeper(a: PairContact, b: PairContact) -> PairContact {

@@ -26,6 +26,7 @@ const CIRCLE: [u32; 2] = [8, 64];
 /// A shape of parry in the voxelmap of a VPS shape.
 pub(crate) struct Probe<'s> {
     shape: &'s dyn Shape,
+    vps: &'s VpsShape,
     field: Trilinear<'s>,
     solid: Aabb,
     /// What the error of the field may be more far from the surface, in metres.
@@ -49,6 +50,7 @@ impl<'s> Probe<'s> {
         let map = &vps.asset().voxelmap;
         Self {
             shape,
+            vps,
             field: map.trilinear(),
             solid: map.solid(),
             far_error: map.accuracy().far_m,
@@ -62,34 +64,93 @@ impl<'s> Probe<'s> {
     pub(crate) fn contacts(&self, pos12: &Pose3, margin: f32, found: &mut Vec<PairContact>) {
         let pose = self.to_field(pos12);
         self.for_each_tip(&pose, margin, &mut |tip| {
-            let center = pose.transform_point(tip.center);
-            let at_center = self.field.penetration(center, Vec3::ZERO);
-            let penetration = at_center + tip.radius;
-            if penetration < -margin {
-                return;
-            }
-            let mut inward = self.field.inward_direction(center);
-            if inward == Vec3::ZERO {
-                inward = (self.solid.center() - center).normalize_or(Vec3::Y);
-            }
-            let out_of_probe = pose.rotation.inverse() * inward;
-            let contact = PairContact {
-                points: [
-                    tip.center + out_of_probe * tip.radius,
-                    center - inward * at_center,
-                ],
-                normals: [out_of_probe, -inward],
-                by_shell: None,
-                shell_is_first: true,
-                ids: [PackedFeatureId::edge(tip.id), PackedFeatureId::UNKNOWN],
-                penetration,
-            };
-            found.push(if self.is_first {
-                contact
-            } else {
-                contact.flipped()
-            });
+            // A point outside of the grid is outside of the solid; a ball around it may not be.
+            let exact_from = if tip.radius > 0.0 { -margin } else { 0.0 };
+            found.extend(self.contact(&pose, &tip, margin, exact_from));
         });
+    }
+
+    /// The deepest contact up to `margin` metres away; apart from each other, the shapes may seem closer
+    /// than they are.
+    pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
+        let pose = self.to_field(pos12);
+        let mut deepest: Option<PairContact> = None;
+        self.for_each_tip(&pose, margin, &mut |tip| {
+            let least = deepest.map_or(-margin, |d| d.penetration);
+            deepest = self.contact(&pose, &tip, -least, 0.0).or(deepest);
+        });
+        deepest
+    }
+
+    /// The deepest contact up to `margin` metres away, at its distance also from outside of the grid.
+    pub(crate) fn closest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
+        let pose = self.to_field(pos12);
+        let mut bounds = Vec::new();
+        self.for_each_tip(&pose, margin, &mut |tip| {
+            let center = pose.transform_point(tip.center);
+            let bound = self.field.penetration(center, Vec3::ZERO) + tip.radius;
+            if bound >= -margin {
+                bounds.push((bound, tip));
+            }
+        });
+        bounds.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut closest: Option<PairContact> = None;
+        for (bound, tip) in bounds {
+            let least = closest.map_or(-margin, |c| c.penetration);
+            if bound < least {
+                break;
+            }
+            let contact = self.contact(&pose, &tip, -least, f32::NEG_INFINITY);
+            closest = contact.or(closest);
+        }
+        closest
+    }
+
+    /// The contact at a tip, if it is up to `margin` metres away. Outside of the grid the field has a
+    /// lower bound of the distance alone: where that says that it is as deep as `exact_from`, or deeper,
+    /// the distance is taken.
+    fn contact(
+        &self,
+        pose: &Pose3,
+        tip: &Tip,
+        margin: f32,
+        exact_from: f32,
+    ) -> Option<PairContact> {
+        let center = pose.transform_point(tip.center);
+        let mut at_center = self.field.penetration(center, Vec3::ZERO);
+        if at_center + tip.radius < -margin {
+            return None;
+        }
+        let mut inward = self.field.inward_direction(center);
+        if at_center + tip.radius >= exact_from && !self.vps.has_in_grid(center) {
+            let on_surface = self.vps.closest_on_surface(center);
+            inward = (on_surface - center).normalize_or_zero();
+            at_center = -on_surface.distance(center);
+        }
+        let penetration = at_center + tip.radius;
+        if penetration < -margin {
+            return None;
+        }
+        if inward == Vec3::ZERO {
+            inward = (self.solid.center() - center).normalize_or(Vec3::Y);
+        }
+        let out_of_probe = pose.rotation.inverse() * inward;
+        let contact = PairContact {
+            points: [
+                tip.center + out_of_probe * tip.radius,
+                center - inward * at_center,
+            ],
+            normals: [out_of_probe, -inward],
+            by_shell: None,
+            shell_is_first: true,
+            ids: [PackedFeatureId::edge(tip.id), PackedFeatureId::UNKNOWN],
+            penetration,
+        };
+        Some(if self.is_first {
+            contact
+        } else {
+            contact.flipped()
+        })
     }
 
     /// Whether a point of an edge is inside of the VPS shape.
@@ -97,8 +158,7 @@ impl<'s> Probe<'s> {
         let pose = self.to_field(pos12);
         let mut touches = false;
         self.for_each_tip(&pose, 0.0, &mut |tip| {
-            let center = pose.transform_point(tip.center);
-            touches |= self.field.penetration(center, Vec3::ZERO) + tip.radius >= 0.0;
+            touches = touches || self.contact(&pose, &tip, 0.0, 0.0).is_some();
         });
         touches
     }

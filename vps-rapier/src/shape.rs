@@ -2,14 +2,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rapier3d::math::{Matrix, Real, Vector};
-use rapier3d::parry::bounding_volume::{Aabb, BoundingSphere};
+use rapier3d::parry::bounding_volume::{Aabb as ParryAabb, BoundingSphere};
 use rapier3d::parry::mass_properties::MassProperties;
-use rapier3d::parry::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
-use rapier3d::parry::shape::{FeatureId, Shape, ShapeType, SharedShape, TypedShape};
-use vps_core::{Asset, DistanceField, Vec3};
+use rapier3d::parry::shape::{Shape, ShapeType, SharedShape, TypedShape};
+use vps_core::{Aabb, Asset, Vec3};
 
 use crate::real::{core_real, core_vector, real, vector};
 use crate::thickness::thickness;
+
+mod project;
+mod ray;
 
 /// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell, and
 /// the field of the other's edges.
@@ -100,19 +102,21 @@ impl VpsShape {
         self.role
     }
 
-    /// The point of the surface the gradient of the field leads to, by Newton steps.
-    fn project(&self, point: Vec3) -> (Vec3, bool) {
-        let field = self.asset.voxelmap.trilinear();
-        let is_inside = field.signed_distance(point) < 0.0;
-        let mut on_surface = self.asset.voxelmap.grid().bounds().clamp(point);
-        for _ in 0..16 {
-            let step = field.signed_distance(on_surface);
-            if step.abs() < 1e-3 * self.asset.voxelmap.grid().voxel_size() {
-                break;
-            }
-            on_surface += field.inward_direction(on_surface) * step;
+    /// Whether a place is where values are stored.
+    pub(crate) fn has_in_grid(&self, place: Vec3) -> bool {
+        self.asset.voxelmap.grid().bounds().contains(place)
+    }
+
+    /// A box that holds all places where the field changes its sign, within the grid.
+    fn surface_bounds(&self) -> Aabb {
+        let map = &self.asset.voxelmap;
+        let (grid, solid, size) = (map.grid().bounds(), map.solid(), map.grid().voxel_size());
+        // Between voxels the surface may be this far from where it is.
+        let around = 2.0 * size;
+        Aabb {
+            min: (solid.min - around).max(grid.min + 0.5 * size),
+            max: (solid.max + around).min(grid.max - 0.5 * size),
         }
-        (on_surface, is_inside)
     }
 }
 
@@ -123,9 +127,9 @@ impl From<VpsShape> for SharedShape {
 }
 
 impl Shape for VpsShape {
-    fn compute_local_aabb(&self) -> Aabb {
+    fn compute_local_aabb(&self) -> ParryAabb {
         let solid = self.asset.voxelmap.solid();
-        Aabb::new(vector(solid.min), vector(solid.max))
+        ParryAabb::new(vector(solid.min), vector(solid.max))
     }
 
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {
@@ -169,73 +173,5 @@ impl Shape for VpsShape {
 
     fn ccd_angular_thickness(&self) -> Real {
         real(std::f32::consts::FRAC_PI_4)
-    }
-}
-
-impl PointQuery for VpsShape {
-    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
-        let (on_surface, is_inside) = self.project(core_vector(point));
-        let nearest = if solid && is_inside {
-            point
-        } else {
-            vector(on_surface)
-        };
-        PointProjection::new(is_inside, nearest)
-    }
-
-    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
-        (self.project_local_point(point, false), FeatureId::Unknown)
-    }
-}
-
-impl RayCast for VpsShape {
-    /// Marches along the ray by what the field says is free (or, from inside and not solid,
-    /// filled).
-    fn cast_local_ray_and_get_normal(
-        &self,
-        ray: &Ray,
-        max_time_of_impact: Real,
-        solid: bool,
-    ) -> Option<RayIntersection> {
-        let field = self.asset.voxelmap.trilinear();
-        let speed = ray.dir.length();
-        let starts_inside = field.signed_distance(core_vector(ray.origin)) < 0.0;
-        let hit = |time| {
-            let inward = field.inward_direction(core_vector(ray.point_at(time)));
-            let normal = vector(-inward);
-            Some(RayIntersection::new(time, normal, FeatureId::Unknown))
-        };
-        if starts_inside && solid {
-            return hit(0.0);
-        }
-        if speed == 0.0 {
-            return None;
-        }
-        let side = if starts_inside { -1.0 } else { 1.0 };
-        let close = 0.05 * self.asset.voxelmap.grid().voxel_size();
-        let (solid_box, mut time) = (self.asset.voxelmap.solid(), 0.0);
-        while time <= max_time_of_impact {
-            let point = core_vector(ray.point_at(time));
-            // Outside of the box its distance is safe, and further than the field's may be.
-            let outside = solid_box.distance_outside(point);
-            let free = side * field.signed_distance(point);
-            if free <= close && outside <= close {
-                return hit(time);
-            }
-            let next = time + real((0.9 * free).max(outside).max(close)) / speed;
-            if next <= time {
-                // From this far away, 32 bits cannot tell two points of the ray apart.
-                return hit(time);
-            }
-            time = next;
-            let passed = solid_box.center() - point;
-            if outside > 0.0
-                && passed.dot(core_vector(ray.dir)) < 0.0
-                && passed.length() > solid_box.extents().length()
-            {
-                return None;
-            }
-        }
-        None
     }
 }

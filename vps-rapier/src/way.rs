@@ -8,6 +8,7 @@ use vps_core::{
 
 use crate::contact::PairContact;
 use crate::real::{core_real, core_vector};
+use crate::surroundings::Surroundings;
 use crate::{Sampling, ShapeField, VpsShape};
 
 /// Most contacts of a pair in both directions of looking at it.
@@ -17,6 +18,8 @@ pub(crate) const SPREAD_SIZE: usize = 8;
 pub(crate) struct Way<'s> {
     tree: &'s PointSphereTree<'static>,
     field: Field<'s>,
+    /// The VPS shape the field is of.
+    of_shape: Option<&'s VpsShape>,
     /// What the error of the field may be more far from the surface, in metres.
     far_error: f32,
     /// Whether the first of the two shapes is the shell.
@@ -62,6 +65,7 @@ impl<'s> Way<'s> {
                 Sampling::Trilinear => Field::Trilinear(map.trilinear()),
                 Sampling::Local => Field::Local(map.local()),
             },
+            of_shape: Some(field),
             far_error: map.accuracy().far_m,
             shell_is_first,
         }
@@ -88,9 +92,16 @@ impl<'s> Way<'s> {
         Self {
             tree: &shell.asset().tree,
             field,
+            of_shape: None,
             far_error: 0.0,
             shell_is_first,
         }
+    }
+
+    /// Whether the shell as a whole may lie in the solid, going by the boxes.
+    pub(crate) fn may_be_within(&self, pos12: &Pose3) -> bool {
+        let solid = with_field!(self, field => field.bounds());
+        solid.may_hold(&self.tree.bounds(), &self.shell_to_field(pos12))
     }
 
     /// Whether the shell touches the solid, `pos12` being the pose of the second shape in the frame
@@ -107,6 +118,33 @@ impl<'s> Way<'s> {
         with_field!(self, field => {
             Query::new(self.tree, field, pose).with_margin(margin).deepest().map(query_deepest)
         })
+    }
+
+    /// The deepest contact up to `margin` metres away, at its distance also from outside of the grid
+    /// of a map, where the field has a lower bound alone.
+    pub(crate) fn closest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
+        let found = self.deepest(pos12, margin)?;
+        let Some(shape) = self.of_shape else {
+            return Some(found);
+        };
+        let pose = self.shell_to_field(pos12);
+        let of_shell = if self.shell_is_first { 0 } else { 1 };
+        if shape.has_in_grid(pose.transform_point(found.points[of_shell])) {
+            return Some(found);
+        }
+        let contact = Query::new(self.tree, &Surroundings::new(shape), pose).closest()?;
+        let in_field = pose.transform_point(contact.position);
+        if shape.has_in_grid(in_field) {
+            return Some(self.on_surfaces(&pose, &contact));
+        }
+        let on_field = shape.closest_on_surface(in_field);
+        let inward = (on_field - in_field).normalize_or_zero();
+        let penetration = -on_field.distance(in_field);
+        let exact = Contact {
+            penetration,
+            ..contact
+        };
+        (penetration >= -margin).then(|| self.between(&pose, &exact, inward))
     }
 
     /// The deepest of all contacts up to `margin` metres away of which something is true.
@@ -268,7 +306,14 @@ impl<'s> Way<'s> {
     /// the field has none, that of the shell.
     fn on_surfaces(&self, shell_to_field: &Pose3, contact: &Contact) -> PairContact {
         let in_field = shell_to_field.transform_point(contact.position);
-        let mut inward: Vec3 = with_field!(self, field => field.inward_direction(in_field));
+        let inward = with_field!(self, field => field.inward_direction(in_field));
+        self.between(shell_to_field, contact, inward)
+    }
+
+    /// The same with a given direction into the solid.
+    fn between(&self, shell_to_field: &Pose3, contact: &Contact, inward: Vec3) -> PairContact {
+        let in_field = shell_to_field.transform_point(contact.position);
+        let mut inward = inward;
         if inward == Vec3::ZERO {
             inward = -(shell_to_field.rotation * contact.normal);
         }

@@ -16,7 +16,9 @@ pub(crate) struct SampleArgs {
     /// A CSV file with the columns x, y and z, in metres in the frame of the mesh
     #[arg(long, value_name = "IN.csv")]
     points: PathBuf,
-    /// Where the result goes
+    /// Where the result goes: `penetration_m` (negative outside) is within `error_bound_m` of the
+    /// exact one, and the solid is closer or deeper by no more than `overestimate_bound_m`. Outside of
+    /// the grid the distance is a lower bound, and the first of the two grows with it
     #[arg(short, long, value_name = "OUT.csv")]
     output: PathBuf,
 }
@@ -38,6 +40,7 @@ struct Sampled {
     gradient_y: f32,
     gradient_z: f32,
     error_bound_m: f32,
+    overestimate_bound_m: f32,
 }
 
 pub(crate) fn run(args: &SampleArgs) -> Result<(), Error> {
@@ -63,6 +66,7 @@ pub(crate) fn run(args: &SampleArgs) -> Result<(), Error> {
             gradient_y: gradient.y,
             gradient_z: gradient.z,
             error_bound_m: field.error_bound_at(point),
+            overestimate_bound_m: field.overestimate_bound_at(point),
         })?;
     }
     let bytes = writer.into_inner().map_err(|e| e.into_error())?;

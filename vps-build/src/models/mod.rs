@@ -16,9 +16,11 @@ use glamx::{DVec2, DVec3};
 
 use crate::Mesh;
 
+mod frames;
 mod parts;
 mod screw;
 
+pub use frames::{frame, window};
 pub use parts::{link, peg};
 pub use screw::{Thread, bolt, nut};
 

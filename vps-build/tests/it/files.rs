@@ -213,6 +213,7 @@ fn samples_are_within_their_stated_error() {
     for i in 0..60 {
         let at = 0.01 * f64::from(i) - 0.25;
         points += &format!("{at},{},{}\n", 0.6 * at, 0.3 * at + 0.02);
+        points += &format!("{},{},{at}\n", 9.0 * at, -20.0 * at);
     }
     std::fs::write(path("in.csv"), points).unwrap();
     let sample = |points: &str| {
@@ -229,16 +230,19 @@ fn samples_are_within_their_stated_error() {
     let exact = vps_core::Cuboid::new(vps_core::Vec3::new(0.15, 0.1, 0.05));
     let text = std::fs::read_to_string(path("out.csv")).unwrap();
     let mut lines = text.lines();
-    let header = "x,y,z,penetration_m,gradient_x,gradient_y,gradient_z,error_bound_m";
+    let header =
+        "x,y,z,penetration_m,gradient_x,gradient_y,gradient_z,error_bound_m,overestimate_bound_m";
     assert_eq!(lines.next(), Some(header));
     let mut inside = 0;
     for line in lines {
         let v: Vec<f32> = line.split(',').map(|c| c.parse().unwrap()).collect();
         let expected = -exact.signed_distance(vps_core::Vec3::new(v[0], v[1], v[2]));
         assert!((v[3] - expected).abs() <= v[7], "{line}: exact {expected}");
+        // Never further away than it is.
+        assert!(v[3] >= expected - v[8], "{line}: exact {expected}");
         inside += i32::from(v[3] > 0.0);
     }
-    assert!(inside > 5 && text.lines().count() == 61);
+    assert!(inside > 5 && text.lines().count() == 121);
     std::fs::write(path("bad.csv"), "x,y,z\n0,0,0\n1,nan,0\n").unwrap();
     std::fs::write(path("short.csv"), "x,y\n0,0\n").unwrap();
     for (name, expected) in [

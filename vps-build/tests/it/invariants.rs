@@ -130,11 +130,13 @@ proptest! {
     fn voxelmaps_conform(
         mesh in bumpy_mesh(), encoding in encoding(),
         balls in prop::collection::vec(
-            (vector(1.2), 0.0..0.5_f32, direction(), 0.0..1.0_f32, direction()), 100),
+            (vector(1.2), 0.0..0.5_f32, direction(), 0.0..1.0_f32, direction(), 0..3), 100),
     ) {
         let asset = asset(&mesh, 10, encoding);
         let map = &asset.voxelmap;
-        for (center, radius, towards, how_far, normal) in balls {
+        for (center, radius, towards, how_far, normal, from_afar) in balls {
+            // Some from outside of the grid, with balls that reach it or do not.
+            let center = if from_afar == 0 { center * 4.0 } else { center };
             let inside = towards * how_far;
             check(&map.local(), center, radius, inside, normal).unwrap();
             check(&map.linear(), center, radius, inside, normal).unwrap();

@@ -1,5 +1,6 @@
 //! Tests of the whole builder.
 
+mod far;
 mod files;
 mod invariants;
 mod queries;

@@ -387,6 +387,54 @@ proptest! {
     }
 }
 
+/// The shell of what lies within is asked, whichever has fewer points.
+#[test]
+fn a_body_within_another_is_found() {
+    let block = Mesh::cuboid([1.0, 0.8, 0.6]).unwrap();
+    let ball = Mesh::icosphere(0.08, 3).unwrap();
+    let mut corners = block.vertices().to_vec();
+    corners.extend(block.scaled(0.7).unwrap().vertices());
+    let turned = block
+        .triangles()
+        .iter()
+        .map(|&[a, b, c]| [a + 8, c + 8, b + 8]);
+    let triangles: Vec<_> = block.triangles().iter().copied().chain(turned).collect();
+    let hollow = Mesh::new(&corners, &triangles).unwrap();
+    for (of_outer, of_inner) in [(100, 900), (900, 100)] {
+        let [outer, hollow] =
+            [&block, &hollow].map(|m| asset(m, of_outer, Encoding::Distances(None)));
+        let inner = asset(&ball, of_inner, Encoding::Distances(None));
+        // 0.15 m below a face: its lowest point is 0.23 m deep. In the hollow one it touches nothing.
+        let at = Pose3::from_translation(Vec3::new(0.05, 0.25, -0.02));
+        let middle = Pose3::from_translation(Vec3::new(0.02, 0.01, 0.0));
+        for swapped in [false, true] {
+            let pair = |outer: &'_ Asset<'_>, pose: Pose3| {
+                let (a, b) = (Body::of_asset(outer), Body::of_asset(&inner));
+                let pair = if swapped {
+                    BodyPair::new(b, a, pose.inverse())
+                } else {
+                    BodyPair::new(a, b, pose)
+                };
+                let up = pair.wrench_on_first(Vec3::ZERO, Weight::Area).force.y;
+                (pair.touches(), pair.closest().unwrap().penetration, up)
+            };
+            let (touches, depth, up) = pair(&outer, at);
+            let error = outer.voxelmap.trilinear().error_bound();
+            assert!(touches && (depth - 0.23).abs() < error, "{depth}");
+            // What is in the block goes up, the block goes down.
+            assert!(if swapped { up > 0.0 } else { up < 0.0 }, "{up}");
+            // Turned, and just below the face.
+            let turn = vps_core::Quat::from_euler(glamx::EulerRot::XYZ, 0.8, 0.3, 0.6);
+            let shallow = Pose3::from_parts(Vec3::new(0.05, 0.31, -0.02), turn);
+            let (touches, depth, _) = pair(&outer, shallow);
+            assert!(touches && (depth - 0.17).abs() < error, "{depth}");
+            let (touches, depth, up) = pair(&hollow, middle);
+            assert!(!touches && (depth + 0.13).abs() < error, "{depth}");
+            assert_eq!(up, 0.0);
+        }
+    }
+}
+
 #[test]
 fn broken_poses_give_no_contact() {
     let asset = asset(
