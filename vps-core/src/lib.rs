@@ -35,7 +35,7 @@
 //! | a few contacts for an engine | [`Query::manifold`] | about that of the deepest |
 //! | one contact a segment (section 2.4) | [`Query::for_each_segment`] | branch and bound in each |
 //! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
-//! | the same, and how it changes with the pose | [`Query::linear_wrench`] | a little more |
+//! | those along the field's gradient, and how they change with the pose | [`Query::linear_wrench`] | a little more |
 //! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
 //! | as much as there is time for | [`Query::time_critical`] | what you allow |
 //! | the same sooner, from one step to the next | [`Query::with_hint`] | a little less |
