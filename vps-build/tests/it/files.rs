@@ -59,6 +59,25 @@ fn an_asset_comes_back_as_it_was() {
     );
 }
 
+/// Those that are not are refused, whatever is in them; one step of 8 further they are read.
+#[test]
+fn bytes_must_lie_at_a_multiple_of_8() {
+    let bytes = encode(&small());
+    let mut words = vec![0_u64; bytes.len() / 8 + 3];
+    let buffer: &mut [u8] = bytemuck::cast_slice_mut(&mut words);
+    for offset in 0..=8 {
+        let place = &mut buffer[offset..offset + bytes.len()];
+        place.copy_from_slice(&bytes);
+        let read = Asset::from_bytes(place).map(|_| ());
+        let expected = if offset % 8 == 0 {
+            Ok(())
+        } else {
+            Err(FormatError::Alignment)
+        };
+        assert_eq!(read, expected, "{offset}");
+    }
+}
+
 #[test]
 fn other_files_are_refused() {
     let good = encode(&small());
