@@ -1,7 +1,8 @@
 //! The command on two meshes made by code.
 
+use std::collections::HashSet;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
@@ -249,6 +250,120 @@ fn what_cannot_be_prepared_is_a_row_that_says_why() {
     assert_eq!(rows.matches(",convex_hull,ok,").count(), 3, "{rows}");
 }
 
+/// Of a surface with more holes than faces the inside is a guess.
+#[test]
+fn of_an_open_mesh_nothing_is_exact_and_nothing_wrong() {
+    let folder = Folder::new("open");
+    let ball = Mesh::icosphere(0.25, 2).unwrap();
+    let crumbs: Vec<_> = ball.triangles().iter().step_by(4).copied().collect();
+    let crumbs = Mesh::new(ball.vertices(), &crumbs).unwrap();
+    let crumbs = folder.write("crumbs.obj", &obj(&crumbs));
+    let ball = folder.write("ball.obj", &obj(&ball));
+    let csv_path = folder.path("rows.csv");
+    let hull = ["--random", "3", "--algorithm", "convex_hull"];
+    let common = [&[&crumbs, &ball, "--csv", &csv_path][..], &hull].concat();
+    let (code, table, errors) = vps_compare(&common);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    let known = format!("known at 0 of 3 poses: the holes of {crumbs} were left open");
+    assert!(table.contains(&known), "{table}");
+    let row = table.lines().find(|l| l.starts_with("convex_hull"));
+    let cells: Vec<_> = row.unwrap().split_whitespace().collect();
+    assert_eq!(cells[cells.len() - 3..], ["–"; 3], "{table}");
+    assert!(
+        !table.contains("inf") && !table.contains("0 + 0"),
+        "{table}"
+    );
+
+    let (_, json, _) = vps_compare(&[&common[..], &["--json"]].concat());
+    let summary: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(summary["exact"], 0);
+    assert_eq!(summary["exact_uncertainty_m"], Value::Null);
+    assert_eq!(summary["mesh_a"]["open"], true);
+    assert_eq!(summary["mesh_b"]["open"], false);
+    let hull = &summary["algorithms"][0];
+    assert_eq!((&hull["answered"], &hull["judged"]), (&3.into(), &0.into()));
+    assert_eq!(hull["error_max_m"], Value::Null);
+    let mut reader = csv::Reader::from_path(&csv_path).unwrap();
+    for row in reader.records().map(Result::unwrap) {
+        assert_eq!((&row[13], &row[14], &row[15]), ("", "", ""));
+        assert_eq!(&row[16], "unknown");
+    }
+}
+
+#[test]
+fn an_algorithm_that_takes_too_long_is_ended_and_says_so() {
+    let folder = Folder::new("time");
+    let [cup, ball] = folder.meshes();
+    let csv_path = folder.path("rows.csv");
+    let arguments = [
+        &cup,
+        &ball,
+        "--random",
+        "2",
+        "--algorithm",
+        "vps",
+        "--voxels",
+        "600",
+        "--time-limit",
+        "0.01",
+        "--csv",
+        &csv_path,
+    ];
+    let (code, table, errors) = vps_compare(&arguments);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    let why = "ended after 0.01 s, its --time-limit";
+    let line = format!("vps: 0 of 2 answered: {why}");
+    assert!(table.contains(&line), "{table}");
+    let rows = std::fs::read_to_string(&csv_path).unwrap();
+    assert_eq!(rows.matches(why).count(), 2, "{rows}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_algorithm_that_takes_too_much_memory_is_ended_and_says_so() {
+    let folder = Folder::new("memory");
+    let [cup, ball] = folder.meshes();
+    let arguments = [&cup, &ball, "--random", "2", "--memory-limit", "1"];
+    let (code, table, errors) = vps_compare(&arguments);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    for name in ALGORITHMS {
+        let line = format!("{name}: 0 of 2 answered: ended at 1 MiB, its --memory-limit");
+        assert!(table.contains(&line), "{table}");
+    }
+}
+
+/// All options that strings of the sources speak of, those of the library that builds assets too.
+#[test]
+fn options_that_messages_recommend_exist() {
+    let (_, help, _) = vps_compare(&["--help"]);
+    let words = help.split(|c: char| c.is_whitespace() || ",<[".contains(c));
+    let known: HashSet<_> = words.filter_map(|word| word.strip_prefix("--")).collect();
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = 0;
+    for folder in ["src", "src/command", "../vps-build/src"] {
+        for entry in std::fs::read_dir(sources.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if !path.extension().is_some_and(|e| e == "rs") {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            for part in code.flat_map(|line| line.split("--").skip(1)) {
+                let end = part.find(|c: char| !c.is_ascii_lowercase() && c != '-');
+                let name = &part[..end.unwrap_or(part.len())];
+                // For the command itself.
+                if name.is_empty() || name == "worker" {
+                    continue;
+                }
+                let is_known = known.contains(name);
+                assert!(is_known, "{}: --{name}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 10, "only {found}");
+}
+
 #[test]
 fn wrong_input_is_one_line_that_names_it() {
     let folder = Folder::new("errors");
@@ -278,6 +393,8 @@ fn wrong_input_is_one_line_that_names_it() {
     fails(&[&cup, &ball, "--scale-a", "1e300"], "cup.obj: ");
     fails(&[&cup, &ball, "--random", "0"], "--random");
     fails(&[&cup, &ball, "--repeat", "0"], "--repeat");
+    fails(&[&cup, &ball, "--time-limit", "0"], "--time-limit");
+    fails(&[&cup, &ball, "--memory-limit", "0"], "--memory-limit");
     fails(&[&cup, &ball, "--prediction=-1"], "--prediction");
     fails(
         &[&cup, &ball, "--poses", &folder.path("no.csv")],
