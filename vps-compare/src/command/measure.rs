@@ -47,7 +47,7 @@ pub(super) enum Answer {
     Missed,
     /// They are apart by more than the tolerance, and a touch was found.
     FalseTouch,
-    /// It is not known whether they overlap by more than the tolerance, or at all.
+    /// The exact penetration is uncertain.
     Unknown,
 }
 
@@ -102,25 +102,21 @@ impl Row {
             exact_penetration_m: exact.map(|e| e.penetration_m),
             exact_uncertainty_m: exact.map(|e| e.uncertainty_m),
             error_m: penetration_m.zip(certain).map(error),
-            answer: asked.map(|_| Answer::of(penetration_m, exact, setting)),
+            answer: asked.map(|_| Answer::of(penetration_m, certain, setting.tolerance_m)),
         }
     }
 }
 
 impl Answer {
-    fn of(penetration_m: Option<f64>, exact: Option<&Exact>, setting: &Setting) -> Self {
-        let Some(exact) = exact else {
+    fn of(penetration_m: Option<f64>, certain: Option<&Exact>, tolerance_m: f64) -> Self {
+        let Some(exact) = certain else {
             return Self::Unknown;
         };
-        let tolerance_m = setting.tolerance_m;
         let touches = penetration_m.is_some_and(|p| p >= 0.0);
-        let may_overlap = exact.penetration_m + exact.uncertainty_m > tolerance_m;
-        if touches && exact.penetration_m < -tolerance_m {
-            Self::FalseTouch
-        } else if !touches && exact.penetration_m > tolerance_m {
+        if !touches && exact.penetration_m > tolerance_m {
             Self::Missed
-        } else if !touches && may_overlap && !setting.is_certain(exact) {
-            Self::Unknown
+        } else if touches && exact.penetration_m < -tolerance_m {
+            Self::FalseTouch
         } else {
             Self::Right
         }

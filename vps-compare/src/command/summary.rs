@@ -85,24 +85,21 @@ impl Summary {
             .map(|e| (setting.is_certain(&e), e.uncertainty_m))
             .partition(|(is_certain, _)| *is_certain);
         let most = |of: &[(bool, f64)]| of.iter().map(|(_, m)| *m).reduce(f64::max);
-        let open: Vec<_> = [(&args.mesh_a, 0), (&args.mesh_b, 1)]
-            .into_iter()
-            .filter(|(_, i)| setting.is_open[*i])
-            .map(|(path, _)| path.display().to_string())
-            .collect();
-        let inexact = match most(&uncertain) {
-            _ if !open.is_empty() => Some(format!(
-                "the holes of {} were left open, so that its inside is a guess",
-                open.join(" and of "),
-            )),
-            Some(most) => Some(format!(
-                "at {} of {} poses the search for the deepest point was given up: it may be \
-                 {most:.1e} m deeper than what was found",
-                uncertain.len(),
-                setting.poses.len(),
-            )),
-            None => None,
+        let open = match setting.is_open {
+            [true, true] => Some("A and B"),
+            [true, false] => Some("A"),
+            [false, true] => Some("B"),
+            [false, false] => None,
         };
+        let open = open.map(|which| {
+            format!("holes of {which} were left open, so that what is inside is a guess")
+        });
+        let given_up = most(&uncertain).map(|most| {
+            format!(
+                "at the others the search for the deepest point was given up, which may be \
+                 {most:.1e} m deeper than what was found"
+            )
+        });
         let algorithm = |candidate| AlgorithmSummary::of(candidate, rows);
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -119,7 +116,7 @@ impl Summary {
             repeat: args.repeat,
             exact: certain.len(),
             exact_uncertainty_m: most(&certain),
-            inexact,
+            inexact: open.or(given_up),
             algorithms: candidates.iter().map(algorithm).collect(),
         }
     }
