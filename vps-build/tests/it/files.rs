@@ -1,6 +1,6 @@
 //! Files: what is written comes back, and damage is noticed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::support::asset;
@@ -123,6 +123,30 @@ fn vps_build(arguments: &[&str]) -> (Option<i32>, String) {
         output.status.code(),
         String::from_utf8(output.stderr).unwrap(),
     )
+}
+
+#[test]
+fn options_that_messages_recommend_exist() {
+    let help = ["build", "inspect", "export", "sample"].map(|command| {
+        let output = output(&[command, "--help"]);
+        String::from_utf8(output.stdout).unwrap()
+    });
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = 0;
+    for folder in ["", "commands", "read"].map(|folder| sources.join(folder)) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            let words = code.flat_map(|l| l.split(|c: char| !c.is_ascii_lowercase() && c != '-'));
+            for option in words.filter(|w| w.len() > 2 && w.starts_with("--")) {
+                let is_known = help.iter().any(|help| help.contains(option));
+                assert!(is_known, "{}: {option}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 2, "only {found}");
 }
 
 #[test]

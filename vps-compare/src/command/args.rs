@@ -129,14 +129,9 @@ pub(super) enum Name {
 
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Vps => "vps",
-            Self::VpsBoth => "vps_both",
-            Self::ConvexHull => "convex_hull",
-            Self::ConvexDecomposition => "convex_decomposition",
-            Self::Trimesh => "trimesh",
-            Self::Voxels => "voxels",
-        })
+        // None is left out of the list of values.
+        let value = self.to_possible_value();
+        f.write_str(value.as_ref().map_or("", |value| value.get_name()))
     }
 }
 
@@ -171,7 +166,7 @@ impl Args {
                 return Err(format!("{name} must be a length in metres, not {length}").into());
             }
         }
-        if !(self.time_limit > 0.0) {
+        if self.time_limit.is_nan() || self.time_limit <= 0.0 {
             let given = self.time_limit;
             return Err(format!("--time-limit must be positive, not {given}").into());
         }
