@@ -63,8 +63,8 @@ struct Worker {
 impl Worker {
     fn start(name: Name, args: &Args) -> Result<Self, Error> {
         let mut child = Command::new(std::env::current_exe()?)
-            .args(std::env::args_os().skip(1))
             .arg(format!("--worker={name}"))
+            .args(std::env::args_os().skip(1))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
