@@ -1,7 +1,7 @@
 //! Raw records: for each job a CSV file of rows, and a JSON file that says what they are.
 //!
-//! The JSON file is written last: a job that has one is done. Folders of several machines are merged
-//! by copying them into one.
+//! The JSON file is written last, with the number and the checksum of the rows: a job is done if they
+//! are those of the CSV file. Folders of several machines are merged by copying them into one.
 
 use std::path::{Path, PathBuf};
 
@@ -13,6 +13,7 @@ use crate::environment::Environment;
 use crate::frame::{Columns, FrameError};
 use crate::job::Job;
 use crate::lab::Preparation;
+use crate::models::sha256;
 
 /// What is known of a job that was run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -22,6 +23,9 @@ pub(crate) struct JobRecord {
     pub(crate) settings: String,
     /// `ok`, or why there are no rows.
     pub(crate) status: String,
+    /// How many rows there are, and the SHA-256 of their file.
+    pub(crate) rows: usize,
+    pub(crate) rows_sha256: String,
     pub(crate) run_s: f64,
     pub(crate) preparation: Preparation,
     pub(crate) environment: Environment,
@@ -29,7 +33,18 @@ pub(crate) struct JobRecord {
 
 /// Rows of a job, as a CSV file.
 #[derive(Debug, Default)]
-pub(crate) struct Rows(Vec<u8>);
+pub(crate) struct Rows {
+    csv: Vec<u8>,
+    count: usize,
+}
+
+/// What the archive has of a job.
+pub(crate) enum Known {
+    Nothing,
+    Record(Box<JobRecord>),
+    /// Something that is not what was written, and why.
+    Damaged(String),
+}
 
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ArchiveError {
@@ -48,7 +63,19 @@ impl Rows {
         for row in rows {
             writer.serialize(row).map_err(|e| e.to_string())?;
         }
-        writer.into_inner().map(Self).map_err(|e| e.to_string())
+        let csv = writer.into_inner().map_err(|e| e.to_string())?;
+        Ok(Self {
+            csv,
+            count: rows.len(),
+        })
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    pub(crate) fn sha256(&self) -> String {
+        sha256(&self.csv)
     }
 }
 
@@ -69,20 +96,31 @@ impl Archive {
         self.folder.join(format!("{}.{extension}", job.id()))
     }
 
-    /// What is known of a job; `None` if it has not been run, or by a version that kept something else.
-    pub(crate) fn record(&self, job: &Job) -> Result<Option<JobRecord>, ArchiveError> {
-        let path = self.path(job, "json");
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(record_error(&path, &error)),
-        };
-        Ok(serde_json::from_slice(&bytes).ok())
+    /// What is known of a job; its rows are read and checked.
+    pub(crate) fn look_up(&self, job: &Job) -> Result<Known, ArchiveError> {
+        let [json, csv] = ["json", "csv"].map(|extension| self.path(job, extension));
+        let damaged =
+            |path: &Path, what: &str| Known::Damaged(format!("{}: {what}", path.display()));
+        Ok(match (read(&json)?, read(&csv)?) {
+            (None, None) => Known::Nothing,
+            (None, Some(_)) => damaged(&json, "missing, the rows beside it may not be all"),
+            (Some(_), None) => damaged(&csv, "missing"),
+            (Some(bytes), Some(rows)) => match serde_json::from_slice::<JobRecord>(&bytes) {
+                Err(error) => damaged(&json, &error.to_string()),
+                Ok(record) if record.rows_sha256 != sha256(&rows) => {
+                    let lines = rows.iter().filter(|b| **b == b'\n').count();
+                    let (found, written) = (lines.saturating_sub(1), record.rows);
+                    let what = format!("{found} rows that are not the {written} that were written");
+                    damaged(&csv, &what)
+                }
+                Ok(record) => Known::Record(record.into()),
+            },
+        })
     }
 
     /// Keeps a job that was run.
     pub(crate) fn write(&self, record: &JobRecord, rows: &Rows) -> Result<(), ArchiveError> {
-        write_atomically(&self.path(&record.job, "csv"), &rows.0)?;
+        write_atomically(&self.path(&record.job, "csv"), &rows.csv)?;
         let path = self.path(&record.job, "json");
         let text = serde_json::to_vec_pretty(record).map_err(|e| record_error(&path, &e))?;
         Ok(write_atomically(&path, &text)?)
@@ -103,6 +141,15 @@ impl Archive {
             let path = self.folder.clone();
             FrameError::Polars { path, source }.into()
         })
+    }
+}
+
+/// The bytes of a file, if there is one.
+fn read(path: &Path) -> Result<Option<Vec<u8>>, ArchiveError> {
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(record_error(path, &error)),
     }
 }
 

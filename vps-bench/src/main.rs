@@ -15,6 +15,7 @@ mod figure;
 mod frame;
 mod job;
 mod lab;
+mod lock;
 mod models;
 mod page;
 mod pin;

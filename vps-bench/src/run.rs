@@ -8,12 +8,13 @@ use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 use vps_build::write_atomically;
 
-use crate::archive::{Archive, JobRecord, Rows};
+use crate::archive::{Archive, JobRecord, Known, Rows};
 use crate::config::ExperimentFile;
 use crate::environment::Environment;
 use crate::experiments::Error;
 use crate::job::{Job, Shard};
 use crate::lab::{Lab, Preparation};
+use crate::lock::Lock;
 use crate::models::sha256;
 use crate::pin;
 
@@ -49,8 +50,9 @@ pub(crate) struct MadeWith {
     pub(crate) failures: Vec<String>,
 }
 
-/// Runs what has not been run before by this program with the same settings, and makes the tables
-/// when all jobs are done. `folder` is that of the experiment's report.
+/// Runs what has not been run before by this program with the same settings, or of which the record is
+/// damaged, and makes the tables when all jobs are done. `folder` is that of the experiment's report,
+/// into which only one run writes at a time.
 pub(crate) fn run(
     name: &str,
     file: &ExperimentFile,
@@ -59,11 +61,13 @@ pub(crate) fn run(
     folder: &Path,
 ) -> Result<Outcome, Error> {
     let experiment = file.kind()?;
-    let archive = Archive::new(folder.join("raw"));
     let jobs = experiment.jobs(choice.quick);
     let core = choice.is_pinned.then(|| pin::to_one_core(choice.shard));
     let environment = Environment::of_now(core.flatten());
     let identity = format!("{} {}", experiment.identity(lab)?, experiment.settings()?);
+    let raw = folder.join("raw");
+    let _lock = Lock::of(&raw)?;
+    let archive = Archive::new(raw);
     let mut outcome = Outcome {
         run: 0,
         kept: 0,
@@ -79,18 +83,25 @@ pub(crate) fn run(
         progress.inc(1);
         let id = format!("{name}/{}", job.id());
         let settings = settings_of(job, &identity, lab)?;
-        let known = archive.record(job)?.filter(|record| {
-            let is_same = record.environment.program == environment.program;
-            record.status == "ok" && record.settings == settings && is_same
-        });
-        if let Some(record) = known {
-            outcome.kept += 1;
-            records.push(record);
-            continue;
-        }
+        let damage = match archive.look_up(job)? {
+            Known::Nothing => None,
+            Known::Damaged(why) => Some(why),
+            Known::Record(record) => {
+                let is_same = record.environment.program == environment.program;
+                if record.status == "ok" && record.settings == settings && is_same {
+                    outcome.kept += 1;
+                    records.push(*record);
+                    continue;
+                }
+                None
+            }
+        };
         if !choice.shard.has(number) || choice.filter.is_some_and(|f| !id.contains(f)) {
             outcome.missing += 1;
             continue;
+        }
+        if let Some(why) = damage {
+            progress.suspend(|| eprintln!("vps-bench: {id} is run again: {why}"));
         }
         progress.set_message(id);
         let start = Instant::now();
@@ -102,6 +113,8 @@ pub(crate) fn run(
             job: job.clone(),
             settings,
             status,
+            rows: rows.count(),
+            rows_sha256: rows.sha256(),
             run_s: start.elapsed().as_secs_f64(),
             preparation,
             environment: environment.clone(),

@@ -42,6 +42,33 @@ fn two_balls() {
     }
 }
 
+/// The search ends before it is sure, and says by how much it may be wrong.
+#[test]
+fn what_is_uncertain_is_so_by_a_finite_length() {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let base = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
+    let vertices = [&base[..], &[DVec3::new(0.5, 0.5, 0.01)]].concat();
+    let triangles = [
+        [0, 2, 1],
+        [0, 3, 2],
+        [0, 1, 4],
+        [1, 2, 4],
+        [2, 3, 4],
+        [3, 0, 4],
+    ];
+    let roof = Mesh::new(&vertices, &triangles).unwrap();
+    let oracle = oracle(&roof, &roof);
+    assert_eq!(oracle.is_open(), [false; 2]);
+    let exact = oracle.penetration(&Pose::translation(0.001, 0.0, 0.0));
+    // A millimetre aside on a slope of 0.02.
+    assert!((exact.penetration_m - 2e-5).abs() < 1e-7, "{exact:?}");
+    let uncertainty_m = exact.uncertainty_m;
+    assert!(
+        uncertainty_m > oracle.tolerance_m() && uncertainty_m < 1e-3,
+        "{exact:?}"
+    );
+}
+
 #[test]
 fn two_boxes_face_to_face_are_exact() {
     let (ground, body) = (

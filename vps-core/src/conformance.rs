@@ -55,6 +55,14 @@ pub enum Violation {
         /// What should hold it.
         bounds: Aabb,
     },
+    /// A gradient is not finite.
+    #[error("the gradient at {point} is {gradient}")]
+    Gradient {
+        /// The point.
+        point: Vec3,
+        /// The gradient.
+        gradient: Vec3,
+    },
     /// The inward direction is not of length one (or zero).
     #[error("the inward direction at {point} has length {length}")]
     Direction {
@@ -127,7 +135,7 @@ pub fn check(
         }
     }
     let mut points = Points::splat(center);
-    (points.x[1], points.y[1], points.z[1]) = (point.x, point.y, point.z);
+    points.set(1, point);
     let together = field.penetrations(&points, &Points::splat(normal))[1];
     if together.to_bits() != penetration.to_bits() {
         return Err(Violation::Lanes {
@@ -135,6 +143,18 @@ pub fn check(
             alone: penetration,
             together,
         });
+    }
+    let (together, gradients) = field.penetrations_and_gradients(&points, &Points::splat(normal));
+    if together[1].to_bits() != penetration.to_bits() {
+        return Err(Violation::Lanes {
+            point,
+            alone: penetration,
+            together: together[1],
+        });
+    }
+    let gradient = gradients.get(1);
+    if !gradient.is_finite() {
+        return Err(Violation::Gradient { point, gradient });
     }
     let bounds = field.bounds();
     if penetration > field.error_bound() && bounds.distance_outside(point) > rounding {

@@ -179,11 +179,12 @@ pub enum StepError {
 ///
 /// # Stability
 /// Springs, dampers and contacts are integrated implicitly, contacts by their [`LinearWrench`]
-/// (Otaduy and Lin 2006). As long as the device rests, contacts are as that says and turns
-/// of a step are small, a step adds no energy, whatever mass, stiffness and time step are. Contacts
-/// that are stiffer along some axis are stable up to 4 m / dt² and twice the stiffness it says
-/// together; so a bare [`Wrench`], which says nothing, is good for 4 m / dt² (a tool of 0.1 kg at
-/// 1 kHz: 400 kN/m). Beyond that, and with any wrench, speeds stay below `max_speed` and
+/// (Otaduy and Lin 2006). The quadratic potential of contacts with a convex solid touches the true
+/// one where the tool is, and is nowhere below it. As long as the device rests, contacts are as their
+/// wrench says and turns of a step are small, a step adds no energy, whatever mass, stiffness and time
+/// step are. Contacts that are stiffer along some axis are stable up to 4 m / dt² and twice the
+/// stiffness it says together; so a bare [`Wrench`], which says nothing, is good for 4 m / dt² (a tool
+/// of 0.1 kg at 1 kHz: 400 kN/m). Beyond that, and with any wrench, speeds stay below `max_speed` and
 /// `max_angular_speed`, force and torque below `max_force` and `max_torque`. The gyroscopic torque,
 /// which does no work and is small at the speed of hands, is left out.
 ///

@@ -162,11 +162,14 @@ mod tests {
         let (mut all, mut segments) = (Vec::new(), Vec::new());
         query.for_each_contact(|c| all.push(c));
         query.for_each_segment(2, |segment, c| segments.push((segment, c)));
-        let wrench = query.wrench(Vec3::ONE, Weight::Area);
+        let wrenches = (
+            query.wrench(Vec3::ONE, Weight::Area),
+            query.linear_wrench(Vec3::ONE, Weight::Area),
+        );
         let estimate = query.time_critical(Vec3::ZERO, |tested| tested < 100);
         let answers = (query.touches(), query.deepest(), query.closest());
         let manifold = query.manifold::<4>();
-        format!("{all:?} {segments:?} {wrench:?} {estimate:?} {answers:?} {manifold:?} {work:?}")
+        format!("{all:?} {segments:?} {wrenches:?} {estimate:?} {answers:?} {manifold:?} {work:?}")
     }
 
     // Compares nothing on a processor without AVX2.

@@ -44,6 +44,26 @@ pub trait DistanceField {
         core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
     }
 
+    /// [`penetrations`](Self::penetrations), the same to the bit, and their gradients: the direction in
+    /// which penetration grows, as long as it grows per metre. That of a point outside of the solid
+    /// may be zero. A field that does not say otherwise gives
+    /// [`inward_direction`](Self::inward_direction).
+    #[inline(always)]
+    fn penetrations_and_gradients(
+        &self,
+        points: &Points,
+        normals: &Points,
+    ) -> ([f32; LANES], Points) {
+        let penetrations = self.penetrations(points, normals);
+        let mut gradients = Points::default();
+        for (lane, penetration) in penetrations.into_iter().enumerate() {
+            if penetration >= 0.0 {
+                gradients.set(lane, self.inward_direction(points.get(lane)));
+            }
+        }
+        (penetrations, gradients)
+    }
+
     /// Upper bounds on the [`penetration`](Self::penetration) in several pieces, each at most the
     /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field that knows
     /// how it bends can use how flat a piece is, and which way it is bent; others take the balls

@@ -60,6 +60,8 @@ pub const VPS_VERSION: u64 = 4;
 
 const MAGIC: [u8; 8] = *b"VPSASSET";
 const ALIGN: usize = 64;
+/// Where the bytes may start: at a multiple of this.
+const ADDRESS: usize = 8;
 
 /// The first 64 bytes.
 #[repr(C)]
@@ -119,7 +121,10 @@ pub enum FormatError {
     #[error("the checksum does not match: the file is damaged")]
     Checksum,
     /// The bytes do not start at a multiple of 8.
-    #[error("the bytes must lie at an address that is a multiple of 8")]
+    #[error(
+        "the bytes must lie at an address that is a multiple of 8: `vps_core::include_asset!` \
+         puts those of a file there, `vps_core::Aligned` is a buffer there"
+    )]
     Alignment,
     /// Values of a size that does not exist.
     #[error("in the voxelmap: values of {0} bytes")]
@@ -173,11 +178,13 @@ impl Layout {
 impl<'a> Asset<'a> {
     /// Reads the bytes of a `.vps` file in place: nothing is copied.
     ///
-    /// Costs one pass over the bytes for the checksum and one over the points a level of the tree.
+    /// They must lie at an address that is a multiple of 8. [`include_asset!`](crate::include_asset)
+    /// puts those of a file there, which `include_bytes!` does not; [`Aligned`](crate::Aligned) is a
+    /// buffer there. Costs one pass over the bytes for the checksum and one over the points a level
+    /// of the tree.
     ///
     /// # Errors
-    /// When the bytes are not a sound asset of this version, at an address that is a multiple
-    /// of 8.
+    /// When the bytes are not a sound asset of this version, or lie elsewhere.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let start = bytes
             .get(..size_of::<Header>())
@@ -188,6 +195,10 @@ impl<'a> Asset<'a> {
         }
         if header.version != VPS_VERSION {
             return Err(FormatError::Version(header.version));
+        }
+        // Whatever is in the file, so that it is found out at once.
+        if !bytes.as_ptr().addr().is_multiple_of(ADDRESS) {
+            return Err(FormatError::Alignment);
         }
         let wrong_length = |expected: usize| FormatError::Length {
             expected: expected as u64,

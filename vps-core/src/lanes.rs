@@ -73,6 +73,12 @@ impl Points {
     pub fn get(&self, lane: usize) -> Vec3 {
         Vec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
+
+    /// Puts a point into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, point: Vec3) {
+        (self.x[lane], self.y[lane], self.z[lane]) = (point.x, point.y, point.z);
+    }
 }
 
 /// What `read` makes of the first of `all` (one at least); should there be fewer than lanes, the last

@@ -35,7 +35,7 @@
 //! | a few contacts for an engine | [`Query::manifold`] | about that of the deepest |
 //! | one contact a segment (section 2.4) | [`Query::for_each_segment`] | branch and bound in each |
 //! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
-//! | the same, and how it changes with the pose | [`Query::linear_wrench`] | a little more |
+//! | those along the field's gradient, and how they change with the pose | [`Query::linear_wrench`] | a little more |
 //! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
 //! | as much as there is time for | [`Query::time_critical`] | what you allow |
 //! | the same sooner, from one step to the next | [`Query::with_hint`] | a little less |
@@ -82,6 +82,7 @@ mod field;
 pub mod format;
 mod function;
 mod grid;
+mod include;
 mod lanes;
 mod linear_wrench;
 mod manifold;
@@ -113,6 +114,7 @@ pub use format::{FormatError, VPS_VERSION};
 pub use function::FieldFn;
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
 pub use grid::{Grid, GridError};
+pub use include::Aligned;
 pub use lanes::{Discs, LANES, Points};
 pub use linear_wrench::LinearWrench;
 pub use manifold::ContactManifold;

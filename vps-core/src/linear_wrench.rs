@@ -9,16 +9,21 @@ use crate::work::CountWork;
 use crate::wrench::Sum;
 use crate::{DistanceField, Query, Weight, Wrench};
 
-/// A penalty wrench, and how it changes when the shell's body moves: what an implicit integrator
-/// needs to stay stable however stiff the contacts are.
+/// The wrench of a potential, and how it changes when the shell's body moves: what an implicit
+/// integrator needs to stay stable however stiff the contacts are.
 ///
-/// Displaced by d and turned by the small rotation vector θ about the point the torque is about, a
-/// contact is deeper by −(n·d + (r × n)·θ). So the force changes by −(`translational` d + `mixed`ᵀ θ)
-/// and the torque by −(`mixed` d + `rotational` θ). The solid is taken as flat where it is touched,
-/// and as facing the shell.
+/// A contact stores the energy w V² / 2 for stiffness one, w being its [`Weight`]. With
+/// n = −∇V, the way out of the solid as the field has it at the contact, it exerts the force w V n.
+/// Displaced by d and turned by the small rotation vector θ about the point the torque is about, it is
+/// deeper by −(n·d + (r × n)·θ). So the force changes by −(`translational` d + `mixed`ᵀ θ) and the
+/// torque by −(`mixed` d + `rotational` θ): the derivative by the pose of a field that is flat where
+/// it is touched. Left out is what its curvature adds, which turns forces but stores nothing.
+///
+/// The normals of the shell are not in it. Where they are tilted, as at sharp edges, forces along
+/// them would belong to no potential, and their stiffness would hold back what slides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinearWrench {
-    /// Force and torque.
+    /// Force and torque: minus the derivative of the potential.
     pub wrench: Wrench,
     /// Sum of w n nᵀ over the contacts: N/m once multiplied by a stiffness.
     pub translational: Mat3,
@@ -92,7 +97,9 @@ impl Mul<f32> for LinearWrench {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// [`wrench`](Self::wrench), and how it changes with the pose; all in the shell frame.
+    /// Force and torque on the shell's body about `center` along the gradient of the field, and how
+    /// they change with the pose; all in the shell frame, for stiffness one. Where the shell's
+    /// normals are those of the field, the force is that of [`wrench`](Self::wrench).
     pub fn linear_wrench(&self, center: Vec3, weight: Weight) -> LinearWrench {
         let least = (-self.margin).max(0.0);
         let none = [Vectors::splat(Vec3::ZERO); 3];
@@ -126,6 +133,7 @@ struct Linear<'q> {
 impl Goal for Linear<'_> {
     const BEST_FIRST: bool = false;
     const ALL: bool = true;
+    const WAY_OUT: bool = true;
 
     #[inline(always)]
     fn least_penetration(&self) -> f32 {
@@ -136,13 +144,14 @@ impl Goal for Linear<'_> {
     fn offer(&mut self, found: &Found<'_>) -> bool {
         let is_inside = found.penetrations.simd_gt(f32x4::ZERO);
         let weights = self.sum.weighted(found, is_inside & f32x4::ONE);
-        let normals = found.inward;
+        let normals = found.way_out;
         let moments = self.sum.arms(found).cross(normals);
         let (n, m) = (normals.times(weights), moments.times(weights));
         add_product(&mut self.translational, normals, n);
         add_product(&mut self.mixed, moments, n);
         add_product(&mut self.rotational, moments, m);
-        self.sum.offer(found)
+        self.sum.push(found, normals);
+        true
     }
 }
 

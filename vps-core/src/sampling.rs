@@ -97,6 +97,21 @@ impl DistanceField for Linear<'_> {
         direction_beyond(point, inside, &map.solid(), at_border, direction)
     }
 
+    /// Those of the linear function of each point's voxel.
+    fn penetrations_and_gradients(
+        &self,
+        points: &Points,
+        normals: &Points,
+    ) -> ([f32; LANES], Points) {
+        let (map, mut gradients) = (self.0, Points::default());
+        for lane in 0..LANES {
+            let inside = map.grid().bounds().clamp(points.get(lane));
+            let slope = gradient(map, map.grid().voxel_at(inside));
+            gradients.set(lane, slope / map.grid().voxel_size());
+        }
+        (self.penetrations(points, normals), gradients)
+    }
+
     #[inline]
     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32 {
         bound_by_voxel(self.0, center, radius, HALF_DIAGONAL + 1.5)
@@ -388,6 +403,26 @@ struct Sampled {
     way: Vectors,
 }
 
+impl Sampled {
+    /// How the penetration grows with the place, per metre. Along an axis on which a point is beyond
+    /// the box only the way to the box counts.
+    #[inline(always)]
+    fn slope(&self) -> Vectors {
+        if !self.outside.simd_gt(f32x4::ZERO).any() {
+            return self.gradients;
+        }
+        let slope = |within: f32x4, off: f32x4| {
+            let is_within = off.simd_eq(f32x4::ZERO);
+            is_within.select(within, -off / self.outside)
+        };
+        Vectors {
+            x: slope(self.gradients.x, self.off.x),
+            y: slope(self.gradients.y, self.off.y),
+            z: slope(self.gradients.z, self.off.z),
+        }
+    }
+}
+
 impl DistanceField for Trilinear<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
@@ -436,6 +471,18 @@ impl DistanceField for Trilinear<'_> {
     #[inline(always)]
     fn penetrations(&self, points: &Points, _normals: &Points) -> [f32; LANES] {
         self.penetrations_at((*points).into()).to_array()
+    }
+
+    /// Those of what is interpolated: the forces along them are the derivative of a potential.
+    #[inline(always)]
+    fn penetrations_and_gradients(
+        &self,
+        points: &Points,
+        _normals: &Points,
+    ) -> ([f32; LANES], Points) {
+        let sampled = self.sampled((*points).into());
+        let penetrations = sampled.values - sampled.outside;
+        (penetrations.to_array(), sampled.slope().into())
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! How a query goes through the tree.
 
+use glamx::Vec3;
 use wide::f32x4;
 
 use crate::dispatch::dispatch;
@@ -18,6 +19,9 @@ pub(crate) trait Goal {
     /// Whether it is all contacts that matter, and no bound is asked for. What is likely to be in the
     /// field as a whole is then looked at without bounding its parts first.
     const ALL: bool = false;
+
+    /// Whether [`offer`](Self::offer) needs the way out of the solid at each contact.
+    const WAY_OUT: bool = false;
 
     /// The highest score any contact in a disc (in the shell frame) can have, given upper bounds
     /// of the penetrations.
@@ -248,10 +252,22 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         while next < end {
             let positions = Points::read(points, next as usize);
             let inward = Points::read(normals, next as usize);
-            let penetrations = f32x4::new(self.field.penetrations(
-                &self.to_field(positions.into()).into(),
-                &Vectors::from(inward).rotated(&self.rotation).into(),
-            ));
+            let in_field = self.to_field(positions.into()).into();
+            let inward_in_field = Vectors::from(inward).rotated(&self.rotation).into();
+            let (penetrations, way_out) = if G::WAY_OUT {
+                let (penetrations, gradients) = self
+                    .field
+                    .penetrations_and_gradients(&in_field, &inward_in_field);
+                let gradients = Vectors::from(gradients);
+                (
+                    penetrations,
+                    gradients.rotated(&self.rotation.transpose()).negated(),
+                )
+            } else {
+                let penetrations = self.field.penetrations(&in_field, &inward_in_field);
+                (penetrations, Vectors::splat(Vec3::ZERO))
+            };
+            let penetrations = f32x4::new(penetrations);
             let least = f32x4::splat(goal.least_penetration());
             let found = Found {
                 tree: self.tree,
@@ -260,6 +276,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 positions: positions.into(),
                 inward: inward.into(),
                 penetrations,
+                way_out,
             };
             if found.counts.any() && !goal.offer(&found) {
                 return false;
@@ -281,6 +298,8 @@ pub(crate) struct Found<'t> {
     pub(crate) positions: Vectors,
     pub(crate) inward: Vectors,
     pub(crate) penetrations: f32x4,
+    /// How much shallower a point is, per metre it is moved; zero unless the goal asks for it.
+    pub(crate) way_out: Vectors,
 }
 
 impl Found<'_> {

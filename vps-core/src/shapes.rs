@@ -49,6 +49,16 @@ impl<S: Convex> DistanceField for S {
     }
 
     #[inline(always)]
+    fn penetrations_and_gradients(
+        &self,
+        points: &Points,
+        _normals: &Points,
+    ) -> ([f32; LANES], Points) {
+        let (penetrations, gradients) = self.sample((*points).into());
+        (penetrations.to_array(), gradients.into())
+    }
+
+    #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         let (penetrations, gradients) = self.sample(discs.centers.into());
         (penetrations + discs.rise(gradients, f32x4::ONE)).to_array()

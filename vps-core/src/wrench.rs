@@ -94,6 +94,15 @@ impl<'q> Sum<'q> {
         }
     }
 
+    /// Adds the forces of contacts along `directions`.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, found: &Found<'_>, directions: Vectors) {
+        let weights = self.weighted(found, found.penetrations.fast_max(f32x4::ZERO));
+        let force = directions.times(weights);
+        self.force = self.force.plus(force);
+        self.torque = self.torque.plus(self.arms(found).cross(force));
+    }
+
     /// From the point the torque is about.
     #[inline(always)]
     pub(crate) fn arms(&self, found: &Found<'_>) -> Vectors {
@@ -112,10 +121,7 @@ impl Goal for Sum<'_> {
 
     #[inline(always)]
     fn offer(&mut self, found: &Found<'_>) -> bool {
-        let weights = self.weighted(found, found.penetrations.fast_max(f32x4::ZERO));
-        let force = found.inward.times(weights);
-        self.force = self.force.plus(force);
-        self.torque = self.torque.plus(self.arms(found).cross(force));
+        self.push(found, found.inward);
         true
     }
 }

@@ -2,8 +2,9 @@
 
 use proptest::prelude::*;
 use vps_core::{
-    CouplingError, CouplingOptions, LinearWrench, Mat3, Pose3, Quat, StepError, Tool, Vec3,
-    VirtualCoupling, Wrench,
+    Aabb, Ball, Capsule, Cluster, CouplingError, CouplingOptions, Cuboid, Cylinder, DistanceField,
+    FieldFn, HalfSpace, LinearWrench, Mat3, PointSphereTree, Pose3, Quat, Query, StepError, Tool,
+    Vec3, VirtualCoupling, Weight, Wrench,
 };
 
 const DT: f32 = 1e-3;
@@ -377,4 +378,181 @@ fn wrong_numbers_are_named() {
     let nowhere = Pose3::from_translation(Vec3::NAN);
     let error = VirtualCoupling::new(tool, options, nowhere).unwrap_err();
     assert_eq!(error, CouplingError::Pose);
+}
+
+/// A tree of one cluster, each point standing for 1 mm².
+fn tree_of(points: &[Vec3], normals: &[Vec3]) -> PointSphereTree<'static> {
+    let radius = points.iter().map(|p| p.length()).fold(1e-3, f32::max);
+    let cluster = Cluster {
+        center: [0.0; 3],
+        radius,
+        normal: [0.0, 1.0, 0.0],
+        thickness: radius,
+        lift: 0.0,
+        bulge: 0.0,
+        first: 0,
+        count: points.len() as u32,
+        parent_point: 0,
+        area: 1e-6 * points.len() as f32,
+    };
+    let arrays = |vectors: &[Vec3]| vectors.iter().map(|v| v.to_array()).collect::<Vec<_>>();
+    PointSphereTree::new(
+        arrays(points).into(),
+        arrays(normals).into(),
+        vec![1e-6; points.len()].into(),
+        vec![cluster].into(),
+        vec![0, 1].into(),
+    )
+    .unwrap()
+}
+
+/// Half of the width of a box that slides, in metres.
+const HALF_WIDTH: f32 = 0.02;
+
+/// The underside of a box: points a millimetre apart, to whose normals `tilt` is added.
+fn underside(mut tilt: impl FnMut(Vec3) -> Vec3) -> PointSphereTree<'static> {
+    let place = |i: u8| -HALF_WIDTH + f32::from(i) * 1e-3;
+    let points = (0..=40).flat_map(|i| (0..=40).map(move |k| (place(i), place(k))));
+    let points: Vec<_> = points.map(|(x, z)| Vec3::new(x, 0.0, z)).collect();
+    let normals = points.iter().map(|p| (Vec3::Y + tilt(*p)).normalize());
+    tree_of(&points, &normals.collect::<Vec<_>>())
+}
+
+/// The normals of a box: those of the rims point half way to the sides.
+fn box_normals(point: Vec3) -> Vec3 {
+    let rim = |c: f32| {
+        if c.abs() > HALF_WIDTH - 1e-4 {
+            -c.signum()
+        } else {
+            0.0
+        }
+    };
+    Vec3::new(rim(point.x), 0.0, rim(point.z))
+}
+
+/// What the device feels of a tool on level ground of so many N/m³, on average over 20 cycles: pressed
+/// on by 1 N first, then moved along at 0.1 m/s.
+fn felt_in_sliding(
+    tree: &PointSphereTree<'_>,
+    ground: &impl DistanceField,
+    height: f32,
+    stiffness: f32,
+) -> Vec3 {
+    let tool = Tool {
+        mass: 0.05,
+        inertia: Mat3::from_diagonal(Vec3::splat(1e-5)),
+        center: 0.01 * Vec3::Y,
+    };
+    let start = Pose3::from_translation(Vec3::new(-0.05, height, 0.0));
+    let mut coupling = placed(&coupling(tool), start);
+    let depth = 1.0 / coupling.options().stiffness;
+    let mut felt = Vec3::ZERO;
+    for cycle in 0..600 {
+        let way = 1e-4 * (cycle as f32 - 200.0).max(0.0);
+        let device = start.translation + Vec3::new(way, -depth, 0.0);
+        let pose = coupling.pose();
+        let contact = Query::new(tree, ground, pose).linear_wrench(tool.center, Weight::Area);
+        let contact = (contact * stiffness).rotated(pose.rotation);
+        let device = Pose3::from_translation(device);
+        let wrench = coupling.step(device, contact, DT).unwrap();
+        if cycle >= 580 {
+            felt += wrench.force / 20.0;
+        }
+    }
+    felt
+}
+
+#[test]
+fn a_box_slides_freely_on_level_ground() {
+    let ground = Cuboid::new(Vec3::new(1.0, 0.1, 1.0));
+    for stiffness in [1e6, 1e8, 1e10] {
+        let felt = felt_in_sliding(&underside(box_normals), &ground, 0.1, stiffness);
+        // Where the device is 1 mm deep, and the tool in a ground of finite stiffness.
+        let expected = 1.0 / (1.0 + 1000.0 / (stiffness * 1681e-6));
+        assert!((felt.y - expected).abs() < 0.02, "{stiffness}: {felt}");
+        assert!(felt.with_y(0.0).length() < 1e-3, "{stiffness}: {felt}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(10))]
+
+    #[test]
+    fn whatever_its_normals_are_a_tool_slides_freely(
+        tilts in prop::collection::vec(vector(2.0), 1..50), stiffness in magnitude(6.0, 10.0),
+        is_a_function in any::<bool>(),
+    ) {
+        let mut tilts = tilts.iter().cycle();
+        let tree = underside(|_| tilts.next().unwrap().with_y(0.0));
+        let felt = if is_a_function {
+            let bounds = Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+            let ground = FieldFn::new(|p: Vec3| -p.y, 1.0, bounds, 0.0);
+            felt_in_sliding(&tree, &ground, 0.0, stiffness)
+        } else {
+            felt_in_sliding(&tree, &HalfSpace::new(Vec3::Y), 0.0, stiffness)
+        };
+        prop_assert!(felt.y > 0.5, "{}", felt);
+        prop_assert!(felt.with_y(0.0).length() < 1e-3, "{}", felt);
+    }
+}
+
+/// Contacts of random points and normals with a solid: the quadratic potential of their wrench is
+/// nowhere below the true one, which they share with it where the tool is. So an implicit step adds no
+/// energy.
+fn check_potential(
+    solid: &impl DistanceField,
+    pose: Pose3,
+    [points, normals]: [&[Vec3]; 2],
+    (way, turn): (Vec3, Vec3),
+) -> Result<(), TestCaseError> {
+    let tree = tree_of(points, normals);
+    let center = Vec3::new(0.01, -0.02, 0.005);
+    let linear = Query::new(&tree, solid, pose).linear_wrench(center, Weight::Point);
+    let [t, m, r] = [linear.translational, linear.mixed, linear.rotational];
+    let curved = way.dot(t * way) + 2.0 * turn.dot(m * way) + turn.dot(r * turn);
+    let given = linear.wrench.force.dot(way) + linear.wrench.torque.dot(turn);
+    let change = 0.5 * curved - given;
+
+    let turned = Quat::from_scaled_axis(turn);
+    let (mut expected, mut tolerance) = (0.0, 1e-9);
+    for point in points {
+        let arm = *point - center;
+        let at = |p: Vec3| {
+            solid
+                .penetration(pose.transform_point(p), Vec3::ZERO)
+                .max(0.0)
+        };
+        let before = at(*point);
+        if before > 0.0 {
+            let after = at(center + turned * arm + way);
+            expected += 0.5 * (after * after - before * before);
+            // A turn is no displacement along a line, by its square.
+            let off = 0.5 * turn.length_squared() * arm.length();
+            let deepest = before + way.length() + turn.length() * arm.length();
+            tolerance += deepest * (off + 1e-6) + off * off;
+        }
+    }
+    prop_assert!(
+        change >= expected - tolerance,
+        "{change} {expected} {tolerance}"
+    );
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn the_potential_of_a_linear_wrench_is_nowhere_below_the_true_one(
+        points in prop::collection::vec(vector(0.1), 1..9),
+        normals in prop::array::uniform8(vector(1.0)),
+        pose in pose(0.1, 3.0), way in vector(0.05), turn in vector(0.02), is_turned in any::<bool>(),
+    ) {
+        let normals = normals.map(|n| n.try_normalize().unwrap_or(Vec3::Y));
+        let shell = [&points[..], &normals[..points.len()]];
+        let motion = (way, if is_turned { turn } else { Vec3::ZERO });
+        check_potential(&Ball::new(0.1), pose, shell, motion)?;
+        check_potential(&Cuboid::new(Vec3::new(0.1, 0.05, 0.2)), pose, shell, motion)?;
+        check_potential(&HalfSpace::new(Vec3::new(1.0, 2.0, 3.0)), pose, shell, motion)?;
+        check_potential(&Capsule::new(0.05, 0.08), pose, shell, motion)?;
+        check_potential(&Cylinder::new(0.05, 0.1), pose, shell, motion)?;
+    }
 }

@@ -148,6 +148,19 @@ impl Project {
         said.out
     }
 
+    /// The command must succeed and say one line on standard error with all of this; gives what it
+    /// printed.
+    pub(crate) fn warns(&self, arguments: &[&str], expected: &[&str]) -> String {
+        let said = self.bench(arguments);
+        assert_eq!(said.code, Some(0), "{arguments:?}: {}", said.errors);
+        assert_eq!(said.errors.lines().count(), 1, "{}", said.errors);
+        for part in expected {
+            let errors = &said.errors;
+            assert!(errors.contains(part), "`{part}` is missing: {errors}");
+        }
+        said.out
+    }
+
     /// The command must end with a code and one line on standard error that says all of this.
     pub(crate) fn fails(&self, code: i32, arguments: &[&str], expected: &[&str]) {
         let said = self.bench(arguments);

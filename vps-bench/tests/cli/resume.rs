@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::project::{Project, column};
+use crate::project::{Project, STEPS, column};
 
 #[test]
 fn what_was_run_is_kept_until_something_changes() {
@@ -21,7 +21,9 @@ fn what_was_run_is_kept_until_something_changes() {
     fs::remove_file(&raw[0]).unwrap();
     fs::remove_file(&raw[1]).unwrap();
     fs::remove_file(raw[1].with_extension("csv")).unwrap();
-    runs("2 jobs run, 2 kept");
+    let expected = ["200hz.hull.0 is run again: ", "200hz.hull.0.json: missing"];
+    let said = project.warns(&["run", "fall", "--quick"], &expected);
+    assert!(said.contains("2 jobs run, 2 kept"), "{said}");
 
     // What is shown or claimed changes no job.
     let fall = "experiments/fall.toml";
@@ -66,10 +68,61 @@ fn a_filter_runs_what_it_names() {
 }
 
 #[test]
-fn a_job_with_a_broken_record_is_run_again() {
+fn a_job_with_a_damaged_record_is_run_again_and_that_is_said() {
     let project = Project::new("broken");
-    project.succeeds(&["run", "fall", "--quick"]);
-    project.write("reports/fall/raw/200hz.hull.0.json", "{ \"job\": ");
-    let said = project.succeeds(&["run", "fall", "--quick"]);
-    assert!(said.contains("1 jobs run, 3 kept"), "{said}");
+    let quick = ["run", "fall", "--quick"];
+    project.succeeds(&quick);
+    let again = |expected: &str| {
+        let job = "fall/200hz.hull.0 is run again: ";
+        let said = project.warns(&quick, &[job, expected]);
+        assert!(said.contains("1 jobs run, 3 kept"), "{said}");
+        let said = project.succeeds(&quick);
+        assert!(said.contains("0 jobs run, 4 kept"), "{said}");
+    };
+    let json = "reports/fall/raw/200hz.hull.0.json";
+    project.write(json, "{ \"job\": ");
+    again("200hz.hull.0.json: EOF");
+    // Rows that are cut at the end of a line, none at all, and one digit that is another.
+    let csv = "reports/fall/raw/200hz.hull.0.csv";
+    let cut = |rows: usize| {
+        let text = project.read(csv);
+        let lines = text.split_inclusive('\n').take(1 + rows);
+        project.write(csv, &lines.collect::<String>());
+    };
+    cut(STEPS - 1);
+    again("0.csv: 119 rows that are not the 120 that were written");
+    cut(0);
+    again("0.csv: 0 rows that are not the 120 that were written");
+    let text = project.read(csv);
+    let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
+    let other = if text[digit..].starts_with('1') {
+        "2"
+    } else {
+        "1"
+    };
+    let text = format!("{}{other}{}", &text[..digit], &text[digit + 1..]);
+    project.write(csv, &text);
+    again("0.csv: 120 rows that are not the 120 that were written");
+    fs::remove_file(project.path(csv)).unwrap();
+    again("0.csv: missing");
+}
+
+#[test]
+fn of_two_runs_into_one_folder_the_second_refuses() {
+    let project = Project::new("lock");
+    let quick = ["run", "fall", "--quick"];
+    project.succeeds(&quick);
+    let lock = project.path("reports/fall/raw/.lock");
+    // What a process leaves that has ended does not keep others out.
+    fs::write(&lock, "4711\n").unwrap();
+    let file = fs::File::open(&lock).unwrap();
+    file.try_lock().unwrap();
+    let expected = ["raw: another run writes there (process 4711)", "--out"];
+    project.fails(2, &quick, &expected);
+    let elsewhere = [&quick[..], &["--out", "other"]].concat();
+    let said = project.succeeds(&elsewhere);
+    assert!(said.contains("4 jobs run, 0 kept"), "{said}");
+    drop(file);
+    let said = project.succeeds(&quick);
+    assert!(said.contains("0 jobs run, 4 kept"), "{said}");
 }

@@ -1,5 +1,8 @@
 //! Input that cannot be used: one line that says where and what.
 
+use std::fs;
+use std::path::Path;
+
 use crate::project::{BOX, Project};
 
 #[test]
@@ -96,6 +99,36 @@ fn models_that_cannot_be_used_are_named() {
     fails(&["flat.obj"], &["flat.obj", "not closed"]);
     fails(&["box.obj", "--scale", "0"], &["scale"]);
     assert!(!project.path("reports").exists());
+}
+
+/// Of this command: options of cargo and git stand in the sources as well.
+#[test]
+fn options_that_messages_recommend_exist() {
+    let project = Project::new("options");
+    let commands = ["run", "report", "compare", "reproduce"];
+    let help = commands.map(|command| project.succeeds(&[command, "--help"]));
+    let others = ["--locked", "--release", "--porcelain"];
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = 0;
+    for folder in [sources.clone(), sources.join("report")] {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            // Properties of a style sheet are no options.
+            if path.extension().is_none_or(|e| e != "rs") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            let words = code.flat_map(|l| l.split(|c: char| !c.is_ascii_lowercase() && c != '-'));
+            for option in words.filter(|w| w.len() > 2 && w.starts_with("--")) {
+                let is_known = help.iter().any(|help| help.contains(option));
+                let is_other = others.contains(&option);
+                assert!(is_known || is_other, "{}: {option}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 4, "only {found}");
 }
 
 #[test]

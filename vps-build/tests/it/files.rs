@@ -1,6 +1,6 @@
 //! Files: what is written comes back, and damage is noticed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::support::asset;
@@ -59,6 +59,25 @@ fn an_asset_comes_back_as_it_was() {
     );
 }
 
+/// Those that are not are refused, whatever is in them; one step of 8 further they are read.
+#[test]
+fn bytes_must_lie_at_a_multiple_of_8() {
+    let bytes = encode(&small());
+    let mut words = vec![0_u64; bytes.len() / 8 + 3];
+    let buffer: &mut [u8] = bytemuck::cast_slice_mut(&mut words);
+    for offset in 0..=8 {
+        let place = &mut buffer[offset..offset + bytes.len()];
+        place.copy_from_slice(&bytes);
+        let read = Asset::from_bytes(place).map(|_| ());
+        let expected = if offset % 8 == 0 {
+            Ok(())
+        } else {
+            Err(FormatError::Alignment)
+        };
+        assert_eq!(read, expected, "{offset}");
+    }
+}
+
 #[test]
 fn other_files_are_refused() {
     let good = encode(&small());
@@ -104,6 +123,30 @@ fn vps_build(arguments: &[&str]) -> (Option<i32>, String) {
         output.status.code(),
         String::from_utf8(output.stderr).unwrap(),
     )
+}
+
+#[test]
+fn options_that_messages_recommend_exist() {
+    let help = ["build", "inspect", "export", "sample"].map(|command| {
+        let output = output(&[command, "--help"]);
+        String::from_utf8(output.stdout).unwrap()
+    });
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = 0;
+    for folder in ["", "commands", "read"].map(|folder| sources.join(folder)) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            let words = code.flat_map(|l| l.split(|c: char| !c.is_ascii_lowercase() && c != '-'));
+            for option in words.filter(|w| w.len() > 2 && w.starts_with("--")) {
+                let is_known = help.iter().any(|help| help.contains(option));
+                assert!(is_known, "{}: {option}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 2, "only {found}");
 }
 
 #[test]

@@ -2,6 +2,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use vps_build::Sign;
 
 use super::Error;
 
@@ -58,6 +59,17 @@ pub(crate) struct Args {
     /// Most parts of a convex decomposition, of up to 100 vertices each
     #[arg(long, default_value_t = 8)]
     pub(super) parts: usize,
+    /// Which side of a face is the inside
+    #[arg(long, value_enum, default_value_t = SignName::Auto)]
+    pub(super) sign: SignName,
+    /// Most seconds an algorithm may take to prepare and to answer, all poses together; it is ended
+    /// then
+    #[arg(long, value_name = "SECONDS", default_value_t = 300.0)]
+    pub(super) time_limit: f64,
+    /// Most memory an algorithm may take, its copies of the meshes included, in MiB; it is ended then
+    /// (on Linux)
+    #[arg(long, value_name = "MIB", default_value_t = 4096)]
+    pub(super) memory_limit: u64,
     /// How often each query is timed, at most; the least counts
     #[arg(long, default_value_t = 5)]
     pub(super) repeat: u32,
@@ -67,6 +79,33 @@ pub(crate) struct Args {
     /// The summary for machines
     #[arg(long)]
     pub(super) json: bool,
+    /// The algorithm to work for, in a process that this command has started
+    #[arg(long, hide = true, value_enum, value_name = "NAME")]
+    pub(super) worker: Option<Name>,
+}
+
+/// What tells inside from outside, as `vps-build build` has it.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum SignName {
+    /// By winding numbers, generalised ones if the mesh has more holes than faces
+    Auto,
+    /// By winding numbers, once neighbours agree and holes are closed
+    Winding,
+    /// By generalised winding numbers, with holes left open: nothing is exact then
+    Generalized,
+    /// What cannot be reached from outside is inside, however faces are turned
+    Fill,
+}
+
+impl From<SignName> for Sign {
+    fn from(name: SignName) -> Self {
+        match name {
+            SignName::Auto => Self::Auto,
+            SignName::Winding => Self::Winding,
+            SignName::Generalized => Self::Generalized,
+            SignName::Fill => Self::Fill,
+        }
+    }
 }
 
 /// An algorithm.
@@ -90,14 +129,9 @@ pub(super) enum Name {
 
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Vps => "vps",
-            Self::VpsBoth => "vps_both",
-            Self::ConvexHull => "convex_hull",
-            Self::ConvexDecomposition => "convex_decomposition",
-            Self::Trimesh => "trimesh",
-            Self::Voxels => "voxels",
-        })
+        // None is left out of the list of values.
+        let value = self.to_possible_value();
+        f.write_str(value.as_ref().map_or("", |value| value.get_name()))
     }
 }
 
@@ -115,6 +149,7 @@ impl Args {
             ("--points", u64::from(self.points)),
             ("--voxels", u64::from(self.voxels)),
             ("--parts", self.parts as u64),
+            ("--memory-limit", self.memory_limit),
         ];
         if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
             return Err(format!("{name} must be at least 1").into());
@@ -130,6 +165,10 @@ impl Args {
             {
                 return Err(format!("{name} must be a length in metres, not {length}").into());
             }
+        }
+        if self.time_limit.is_nan() || self.time_limit <= 0.0 {
+            let given = self.time_limit;
+            return Err(format!("--time-limit must be positive, not {given}").into());
         }
         Ok(())
     }

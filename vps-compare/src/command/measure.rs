@@ -1,16 +1,13 @@
 //! Every algorithm at every pose.
 
-use std::time::{Duration, Instant};
-
-use indicatif::ProgressBar;
 use rapier3d::math::Pose;
 use serde::Serialize;
 use vps_compare::oracle::Exact;
-use vps_compare::{Contacts, Prepared};
 
-use super::algorithms::Candidate;
-use super::guard::guarded;
+use super::candidate::Candidate;
+use super::progress::Progress;
 use super::setting::Setting;
+use super::worker::{Asked, Question};
 
 /// What an algorithm said at a pose.
 #[derive(Clone, Debug, Serialize)]
@@ -31,9 +28,11 @@ pub(super) struct Row {
     /// Of the deepest contact; empty if there is none within the prediction.
     pub(super) penetration_m: Option<f64>,
     pub(super) query_ns: Option<u64>,
-    pub(super) exact_penetration_m: f64,
-    pub(super) exact_uncertainty_m: f64,
-    /// How far the two penetrations are from each other.
+    /// Empty if a mesh is open.
+    pub(super) exact_penetration_m: Option<f64>,
+    /// By how much the exact one may be larger.
+    pub(super) exact_uncertainty_m: Option<f64>,
+    /// How far the two penetrations are from each other; empty if the exact one is uncertain.
     pub(super) error_m: Option<f64>,
     /// Empty if there is no answer.
     pub(super) answer: Option<Answer>,
@@ -48,104 +47,44 @@ pub(super) enum Answer {
     Missed,
     /// They are apart by more than the tolerance, and a touch was found.
     FalseTouch,
+    /// The exact penetration is uncertain.
+    Unknown,
 }
-
-/// No query is repeated once its repetitions took this long.
-const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Asks all algorithms, pose by pose, so that a slow minute of the machine meets all.
 pub(super) fn measure(
     setting: &Setting,
-    candidates: &[Candidate],
-    repeat: u32,
-    progress: &ProgressBar,
+    candidates: &mut [Candidate],
+    progress: &Progress,
 ) -> Vec<Row> {
     let mut rows = Vec::new();
-    for (i, (pose, exact)) in setting.poses.iter().enumerate() {
-        for candidate in candidates {
-            let number = i + 1;
-            let count = setting.poses.len();
-            progress.set_message(format!("pose {number} of {count}: {}", candidate.name));
-            let asked = match &candidate.prepared {
-                Ok(prepared) => ask(prepared, pose, setting.prediction_m as f32, repeat),
-                Err(why) => Err(why.clone()),
-            };
+    let count = setting.poses.len();
+    for (number, (pose, exact)) in (1..).zip(&setting.poses) {
+        let question = Question::of(pose, setting.prediction_m);
+        for candidate in &mut *candidates {
+            progress.set(format!("pose {number} of {count}: {}", candidate.name));
+            let asked = candidate.ask(&question);
             let name = candidate.name.to_string();
-            rows.push(Row::of(
-                number,
-                pose,
-                exact,
-                setting.tolerance_m,
-                name,
-                asked,
-            ));
+            rows.push(Row::of(number, pose, exact.as_ref(), setting, name, asked));
         }
     }
     rows
-}
-
-struct Asked {
-    contacts: usize,
-    penetration_m: Option<f64>,
-    query_ns: u64,
-}
-
-/// Asks once to warm up, and then for the time: every time anew, without contacts of a step before,
-/// as the pose of a body is new in every step.
-fn ask(prepared: &Prepared, pose: &Pose, prediction: f32, repeat: u32) -> Result<Asked, String> {
-    guarded(|| {
-        let begin = Instant::now();
-        let mut least: Option<Duration> = None;
-        let mut summary = (0, None);
-        for turn in 0..=repeat {
-            let mut contacts = Contacts::default();
-            let start = Instant::now();
-            let result = prepared.query(pose, prediction, &mut contacts);
-            let took = start.elapsed();
-            result.map_err(|_| "unsupported".to_owned())?;
-            summary = contacts.summary();
-            let is_warm = turn > 0;
-            if is_warm {
-                least = Some(least.map_or(took, |l| l.min(took)));
-                if begin.elapsed() > PATIENCE {
-                    break;
-                }
-            }
-        }
-        let (contacts, penetration) = summary;
-        if let Some(p) = penetration.filter(|p| !p.is_finite()) {
-            return Err(format!("the penetration is {p}"));
-        }
-        Ok(Asked {
-            contacts,
-            penetration_m: penetration.map(f64::from),
-            query_ns: least.unwrap_or_default().as_nanos() as u64,
-        })
-    })
 }
 
 impl Row {
     fn of(
         number: usize,
         pose: &Pose,
-        exact: &Exact,
-        tolerance_m: f64,
+        exact: Option<&Exact>,
+        setting: &Setting,
         algorithm: String,
         asked: Result<Asked, String>,
     ) -> Self {
-        let answer = |asked: &Asked| {
-            let touches = asked.penetration_m.is_some_and(|p| p >= 0.0);
-            if !touches && exact.penetration_m > tolerance_m {
-                Answer::Missed
-            } else if touches && exact.penetration_m < -tolerance_m {
-                Answer::FalseTouch
-            } else {
-                Answer::Right
-            }
-        };
         let status = asked.as_ref().err().cloned();
         let asked = asked.ok();
         let penetration_m = asked.as_ref().and_then(|a| a.penetration_m);
+        let certain = exact.filter(|exact| setting.is_certain(exact));
+        let error = |(found, exact): (f64, &Exact)| (found - exact.penetration_m).abs();
         Self {
             pose: number,
             x_m: pose.translation.x,
@@ -160,10 +99,26 @@ impl Row {
             contacts: asked.as_ref().map(|a| a.contacts),
             penetration_m,
             query_ns: asked.as_ref().map(|a| a.query_ns),
-            exact_penetration_m: exact.penetration_m,
-            exact_uncertainty_m: exact.uncertainty_m,
-            error_m: penetration_m.map(|p| (p - exact.penetration_m).abs()),
-            answer: asked.as_ref().map(answer),
+            exact_penetration_m: exact.map(|e| e.penetration_m),
+            exact_uncertainty_m: exact.map(|e| e.uncertainty_m),
+            error_m: penetration_m.zip(certain).map(error),
+            answer: asked.map(|_| Answer::of(penetration_m, certain, setting.tolerance_m)),
+        }
+    }
+}
+
+impl Answer {
+    fn of(penetration_m: Option<f64>, certain: Option<&Exact>, tolerance_m: f64) -> Self {
+        let Some(exact) = certain else {
+            return Self::Unknown;
+        };
+        let touches = penetration_m.is_some_and(|p| p >= 0.0);
+        if !touches && exact.penetration_m > tolerance_m {
+            Self::Missed
+        } else if touches && exact.penetration_m < -tolerance_m {
+            Self::FalseTouch
+        } else {
+            Self::Right
         }
     }
 }

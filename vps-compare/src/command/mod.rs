@@ -2,21 +2,21 @@
 
 mod algorithms;
 mod args;
+mod candidate;
 mod guard;
 mod measure;
 mod poses;
+mod progress;
 mod setting;
 mod summary;
 mod table;
-
-use std::time::Duration;
-
-use indicatif::{ProgressBar, ProgressStyle};
+mod worker;
 
 pub(crate) use args::Args;
 
-use algorithms::{Built, prepare};
+use candidate::Candidate;
 use measure::measure;
+use progress::Progress;
 use setting::Setting;
 use summary::Summary;
 
@@ -24,17 +24,20 @@ use summary::Summary;
 type Error = Box<dyn std::error::Error>;
 
 pub(crate) fn run(args: &Args) -> Result<(), Error> {
-    args.check()?;
-    let progress = progress()?;
-    progress.set_message("reading the meshes");
-    let setting = Setting::of(args, &progress)?;
-    let (mut candidates, built) = (Vec::new(), Built::default());
-    for name in args.algorithms() {
-        progress.set_message(format!("preparing {name}"));
-        candidates.push(prepare(name, args, &setting, &built));
+    if let Some(name) = args.worker {
+        return worker::work(name, args);
     }
-    let rows = measure(&setting, &candidates, args.repeat, &progress);
-    progress.finish_and_clear();
+    args.check()?;
+    let progress = Progress::new()?;
+    progress.set("reading the meshes".into());
+    let setting = Setting::of(args, &progress)?;
+    let mut candidates = Vec::new();
+    for name in args.algorithms() {
+        progress.set(format!("preparing {name}"));
+        candidates.push(Candidate::prepare(name, args)?);
+    }
+    let rows = measure(&setting, &mut candidates, &progress);
+    drop(progress);
     if let Some(path) = &args.csv {
         let mut writer = csv::Writer::from_writer(Vec::new());
         for row in &rows {
@@ -50,12 +53,4 @@ pub(crate) fn run(args: &Args) -> Result<(), Error> {
         print!("{}", table::text(&summary));
     }
     Ok(())
-}
-
-/// Draws nothing when standard error is not a terminal.
-fn progress() -> Result<ProgressBar, Error> {
-    let progress = ProgressBar::no_length();
-    progress.set_style(ProgressStyle::with_template("{spinner} {msg} ({elapsed})")?);
-    progress.enable_steady_tick(Duration::from_millis(100));
-    Ok(progress)
 }

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use indicatif::ProgressBar;
 use rapier3d::math::Pose;
-use vps_build::{ExactSolid, Mesh, Sign, read_mesh};
+use vps_build::{ExactSolid, Mesh, read_mesh};
 use vps_compare::oracle::{Exact, SolidOracle};
 
 use super::args::Args;
+use super::progress::Progress;
 use super::{Error, poses};
 
 /// All that is the same for all algorithms.
@@ -20,8 +20,12 @@ pub(super) struct Setting {
     pub(super) spread_m: Option<f64>,
     pub(super) prediction_m: f64,
     pub(super) tolerance_m: f64,
-    /// Of B in the frame of A, with the exact penetration.
-    pub(super) poses: Vec<(Pose, Exact)>,
+    /// Of B in the frame of A, with the exact penetration if neither is open.
+    pub(super) poses: Vec<(Pose, Option<Exact>)>,
+    /// How uncertain the exact penetration is where its search came to an end, in metres.
+    pub(super) exact_tolerance_m: f64,
+    /// Whether A and B were left open, so that nothing is exact.
+    pub(super) is_open: [bool; 2],
 }
 
 /// Parts of the longest side of the smaller mesh.
@@ -30,15 +34,15 @@ const PREDICTION: f64 = 0.02;
 const TOLERANCE: f64 = 0.001;
 
 impl Setting {
-    pub(super) fn of(args: &Args, progress: &ProgressBar) -> Result<Self, Error> {
-        let mesh_a = mesh(&args.mesh_a, args.scale_a, "--scale-a")?;
-        let mesh_b = mesh(&args.mesh_b, args.scale_b, "--scale-b")?;
+    pub(super) fn of(args: &Args, progress: &Progress) -> Result<Self, Error> {
+        let (mesh_a, mesh_b) = meshes(args)?;
         let read = args.poses.as_deref().map(poses::read).transpose()?;
-        progress.set_message("sorting triangles");
-        let solid_a = solid(&args.mesh_a, &mesh_a)?;
-        let solid_b = solid(&args.mesh_b, &mesh_b)?;
+        progress.set("sorting triangles".into());
+        let solid_a = solid(&args.mesh_a, &mesh_a, args)?;
+        let solid_b = solid(&args.mesh_b, &mesh_b, args)?;
         let watertight = [&solid_a, &solid_b].map(|solid| solid.repairs().is_none());
         let oracle = SolidOracle::new(solid_a, solid_b);
+        let is_open = oracle.is_open();
         let longest = |mesh: &Mesh| {
             let (low, high) = mesh.bounds();
             (high - low).max_element()
@@ -49,7 +53,7 @@ impl Setting {
         let poses = match read {
             Some(poses) => poses,
             None => {
-                progress.set_message("moving B to where it touches A");
+                progress.set("moving B to where it touches A".into());
                 poses::random(
                     [&mesh_a, &mesh_b],
                     &oracle,
@@ -61,8 +65,9 @@ impl Setting {
         };
         let count = poses.len();
         let exact = |(i, pose): (usize, Pose)| {
-            progress.set_message(format!("exact penetration of pose {} of {count}", i + 1));
-            (pose, oracle.penetration(&pose))
+            progress.set(format!("exact penetration of pose {} of {count}", i + 1));
+            let is_known = !is_open.contains(&true);
+            (pose, is_known.then(|| oracle.penetration(&pose)))
         };
         Ok(Self {
             watertight,
@@ -70,10 +75,25 @@ impl Setting {
             prediction_m: args.prediction.unwrap_or(PREDICTION * size),
             tolerance_m: args.tolerance.unwrap_or(TOLERANCE * size),
             poses: poses.into_iter().enumerate().map(exact).collect(),
+            exact_tolerance_m: oracle.tolerance_m(),
+            is_open,
             mesh_a,
             mesh_b,
         })
     }
+
+    /// Whether an exact penetration is exact enough to measure errors by.
+    pub(super) fn is_certain(&self, exact: &Exact) -> bool {
+        exact.uncertainty_m <= self.tolerance_m.max(self.exact_tolerance_m)
+    }
+}
+
+/// A and B in metres.
+pub(super) fn meshes(args: &Args) -> Result<(Mesh, Mesh), Error> {
+    Ok((
+        mesh(&args.mesh_a, args.scale_a, "--scale-a")?,
+        mesh(&args.mesh_b, args.scale_b, "--scale-b")?,
+    ))
 }
 
 fn mesh(path: &Path, scale: f64, option: &str) -> Result<Mesh, Error> {
@@ -82,7 +102,7 @@ fn mesh(path: &Path, scale: f64, option: &str) -> Result<Mesh, Error> {
     Ok(scaled.map_err(|e| format!("{}: {option}: {e}", path.display()))?)
 }
 
-fn solid(path: &Path, mesh: &Mesh) -> Result<ExactSolid, Error> {
-    let solid = ExactSolid::new(mesh, Sign::Auto);
+fn solid(path: &Path, mesh: &Mesh, args: &Args) -> Result<ExactSolid, Error> {
+    let solid = ExactSolid::new(mesh, args.sign.into());
     Ok(solid.map_err(|e| format!("{}: {e}", path.display()))?)
 }

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 use vps_build::Mesh;
-use vps_compare::{Prepared, Size};
 
-use super::algorithms::Candidate;
 use super::args::Args;
+use super::candidate::Candidate;
 use super::measure::{Answer, Row};
 use super::setting::Setting;
 
@@ -27,7 +26,11 @@ pub(super) struct Summary {
     pub(super) prediction_m: f64,
     pub(super) tolerance_m: f64,
     pub(super) repeat: u32,
-    pub(super) exact_uncertainty_m: f64,
+    /// At how many poses the exact penetration is known to within `exact_uncertainty_m`.
+    pub(super) exact: usize,
+    pub(super) exact_uncertainty_m: Option<f64>,
+    /// Why it is not known at all poses.
+    pub(super) inexact: Option<String>,
     pub(super) algorithms: Vec<AlgorithmSummary>,
 }
 
@@ -38,6 +41,8 @@ pub(super) struct MeshSummary {
     pub(super) extents_m: [f64; 3],
     /// Whether it was a solid as it stood; otherwise what is exact is so for the repaired one.
     pub(super) watertight: bool,
+    /// Whether its holes were left open: what is inside is a guess, and nothing exact.
+    pub(super) open: bool,
 }
 
 /// What an algorithm is and did. Times, contacts and errors are of the queries that were answered.
@@ -48,9 +53,9 @@ pub(super) struct AlgorithmSummary {
     pub(super) status: String,
     /// What A and B became, such as a number of points.
     #[serde(serialize_with = "as_map")]
-    pub(super) size_a: Size,
+    pub(super) size_a: Vec<(String, usize)>,
     #[serde(serialize_with = "as_map")]
-    pub(super) size_b: Size,
+    pub(super) size_b: Vec<(String, usize)>,
     pub(super) prepare_s: f64,
     pub(super) memory_bytes: Option<usize>,
     pub(super) memory_is_estimate: Option<bool>,
@@ -62,6 +67,8 @@ pub(super) struct AlgorithmSummary {
     pub(super) compared: usize,
     pub(super) error_median_m: Option<f64>,
     pub(super) error_max_m: Option<f64>,
+    /// At how many poses it is known whether the answer is right.
+    pub(super) judged: usize,
     pub(super) missed: usize,
     pub(super) false_touches: usize,
 }
@@ -73,13 +80,31 @@ impl Summary {
         candidates: &[Candidate],
         rows: &[Row],
     ) -> Self {
-        let exact = || setting.poses.iter().map(|(_, exact)| exact);
-        let [a, b] = setting.watertight;
+        let exact = || setting.poses.iter().filter_map(|(_, exact)| *exact);
+        let (certain, uncertain): (Vec<_>, Vec<_>) = exact()
+            .map(|e| (setting.is_certain(&e), e.uncertainty_m))
+            .partition(|(is_certain, _)| *is_certain);
+        let most = |of: &[(bool, f64)]| of.iter().map(|(_, m)| *m).reduce(f64::max);
+        let open = match setting.is_open {
+            [true, true] => Some("A and B"),
+            [true, false] => Some("A"),
+            [false, true] => Some("B"),
+            [false, false] => None,
+        };
+        let open = open.map(|which| {
+            format!("holes of {which} were left open, so that what is inside is a guess")
+        });
+        let given_up = most(&uncertain).map(|most| {
+            format!(
+                "at the others the search for the deepest point was given up, which may be \
+                 {most:.1e} m deeper than what was found"
+            )
+        });
         let algorithm = |candidate| AlgorithmSummary::of(candidate, rows);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            mesh_a: MeshSummary::of(&args.mesh_a, &setting.mesh_a, a),
-            mesh_b: MeshSummary::of(&args.mesh_b, &setting.mesh_b, b),
+            mesh_a: MeshSummary::of(&args.mesh_a, &setting.mesh_a, setting, 0),
+            mesh_b: MeshSummary::of(&args.mesh_b, &setting.mesh_b, setting, 1),
             poses_file: args.poses.as_ref().map(|path| path.display().to_string()),
             seed: args.poses.is_none().then_some(args.seed),
             spread_m: setting.spread_m,
@@ -89,20 +114,24 @@ impl Summary {
             prediction_m: setting.prediction_m,
             tolerance_m: setting.tolerance_m,
             repeat: args.repeat,
-            exact_uncertainty_m: exact().map(|e| e.uncertainty_m).fold(0.0, f64::max),
+            exact: certain.len(),
+            exact_uncertainty_m: most(&certain),
+            inexact: open.or(given_up),
             algorithms: candidates.iter().map(algorithm).collect(),
         }
     }
 }
 
 impl MeshSummary {
-    fn of(path: &Path, mesh: &Mesh, watertight: bool) -> Self {
+    /// Of the first or the second mesh.
+    fn of(path: &Path, mesh: &Mesh, setting: &Setting, which: usize) -> Self {
         let (low, high) = mesh.bounds();
         Self {
             file: path.display().to_string(),
             triangles: mesh.triangles().len(),
             extents_m: (high - low).to_array(),
-            watertight,
+            watertight: setting.watertight[which],
+            open: setting.is_open[which],
         }
     }
 }
@@ -121,15 +150,15 @@ impl AlgorithmSummary {
         let contacts = sorted(&|row| row.contacts.map(|n| n as f64));
         let failed = rows.iter().find(|row| row.status != "ok");
         let count = |answer| rows.iter().filter(|r| r.answer == Some(answer)).count();
-        let prepared = candidate.prepared.as_ref().ok();
-        let memory = prepared.map(Prepared::memory);
+        let made = candidate.made.as_ref().ok();
+        let answers = rows.iter().filter_map(|row| row.answer);
         Self {
             status: failed.map_or_else(|| "ok".into(), |row| row.status.clone()),
-            size_a: prepared.map_or_else(Size::new, |p| p.ground_size.clone()),
-            size_b: prepared.map_or_else(Size::new, |p| p.size.clone()),
+            size_a: made.map_or_else(Vec::new, |m| m.size_a.clone()),
+            size_b: made.map_or_else(Vec::new, |m| m.size_b.clone()),
             prepare_s: candidate.prepare_s,
-            memory_bytes: memory.map(|m| m.bytes),
-            memory_is_estimate: memory.map(|m| m.is_estimate),
+            memory_bytes: made.map(|m| m.memory_bytes),
+            memory_is_estimate: made.map(|m| m.memory_is_estimate),
             answered: times.len(),
             query_median_ns: quantile(&times, 0.5),
             query_p99_ns: quantile(&times, 0.99),
@@ -138,6 +167,7 @@ impl AlgorithmSummary {
             compared: errors.len(),
             error_median_m: quantile(&errors, 0.5),
             error_max_m: errors.last().copied(),
+            judged: answers.filter(|a| *a != Answer::Unknown).count(),
             missed: count(Answer::Missed),
             false_touches: count(Answer::FalseTouch),
             algorithm,
@@ -145,8 +175,8 @@ impl AlgorithmSummary {
     }
 }
 
-fn as_map<S: Serializer>(size: &Size, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(size.iter().copied())
+fn as_map<S: Serializer>(size: &[(String, usize)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(size.iter().map(|(name, number)| (name, number)))
 }
 
 /// Between the two values next to it, in proportion.

@@ -31,6 +31,14 @@ pub(super) fn text(summary: &Summary) -> String {
         summary.prediction_m,
         summary.tolerance_m,
     );
+    if let Some(why) = &summary.inexact {
+        let _ = writeln!(
+            text,
+            "The exact penetration is known at {} of {} poses: {why}. Errors and wrong answers are \
+             counted where it is known\n",
+            summary.exact, summary.poses,
+        );
+    }
     let rows: Vec<_> = summary.algorithms.iter().map(cells).collect();
     let widths: Vec<usize> = (0..HEADER.len())
         .map(|c| {
@@ -67,12 +75,16 @@ pub(super) fn text(summary: &Summary) -> String {
             summary.poses
         );
     }
+    let uncertain = summary
+        .exact_uncertainty_m
+        .map_or_else(String::new, |most| {
+            format!("; the exact one is uncertain by up to {most:.1e} m")
+        });
     let _ = writeln!(
         text,
-        "\nerror: deepest contact against the exact penetration, where there is a contact; the \
-         exact one is uncertain by up to {:.1e} m\nwrong: overlaps missed + touches that are none; \
+        "\nerror: deepest contact against the exact penetration, where there is a contact{uncertain}\n\
+         wrong: overlaps missed + touches that are none; \
          ~: memory as parry counts it or as its shapes can be asked",
-        summary.exact_uncertainty_m,
     );
     text
 }
@@ -87,6 +99,8 @@ fn of_mesh(mesh: &MeshSummary) -> String {
     });
     let repaired = if mesh.watertight {
         ""
+    } else if mesh.open {
+        ", open: nothing is exact"
     } else {
         ", not watertight: exact values are those of the repaired mesh"
     };
@@ -113,10 +127,17 @@ fn cells(algorithm: &AlgorithmSummary) -> [String; 10] {
         (Some((what, a)), Some((_, b))) => format!("{a} / {b} {what}"),
         _ => "–".into(),
     };
-    let wrong = if algorithm.answered == 0 {
-        "–".into()
-    } else {
-        format!("{} + {}", algorithm.missed, algorithm.false_touches)
+    let AlgorithmSummary {
+        answered,
+        judged,
+        missed,
+        false_touches,
+        ..
+    } = algorithm;
+    let wrong = match judged {
+        0 => "–".into(),
+        _ if judged == answered => format!("{missed} + {false_touches}"),
+        _ => format!("{missed} + {false_touches} of {judged}"),
     };
     [
         algorithm.algorithm.clone(),

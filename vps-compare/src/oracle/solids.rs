@@ -18,6 +18,8 @@ use super::triangles::squared_distance;
 ///
 /// For bodies that overlap a little that is the way out as well. For those deep in each other the
 /// shortest way out is longer, for convex solids as for others.
+///
+/// Nothing is exact of a mesh that [is open](Self::is_open).
 pub struct SolidOracle {
     ground: Side,
     body: Side,
@@ -29,16 +31,17 @@ pub struct SolidOracle {
 pub struct Exact {
     /// In metres, positive when the solids overlap.
     pub penetration_m: f64,
-    /// By how much the true value may be larger, in metres.
+    /// By how much the true value may be larger, in metres; finite. More than the
+    /// [tolerance](SolidOracle::tolerance_m) where the search was given up.
     pub uncertainty_m: f64,
 }
 
 /// What part of the size of the smaller solid a depth may be off.
 const TOLERANCE: f64 = 1e-5;
 
-/// How many pieces of surface are looked at for a pose; after that the answer is as uncertain as it
-/// says. Two surfaces at the same distance everywhere need that many.
-const MOST_PIECES: usize = 200_000;
+/// How many pieces of each surface are looked at for a pose; after that the answer is as uncertain as
+/// it says. Two surfaces at the same distance everywhere need that many.
+const MOST_PIECES: usize = 100_000;
 
 /// Surfaces this close, as a part of their size, may cross, for all that rounding lets one see.
 const ROUNDING: f64 = 1e-12;
@@ -71,6 +74,17 @@ impl SolidOracle {
         }
     }
 
+    /// How uncertain the penetration is at most where the search came to its end, in metres.
+    pub fn tolerance_m(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Whether the ground's surface has holes that were left open, and whether the body's has. What
+    /// is inside of such a one, and how far from its surface, is a guess.
+    pub fn is_open(&self) -> [bool; 2] {
+        [&self.ground, &self.body].map(|side| side.solid.repairs().left_open)
+    }
+
     /// The distance of the two solids in metres, 0 if they meet.
     pub fn separation(&self, body_in_ground: &Pose) -> f64 {
         self.distance(&exact(body_in_ground)).unwrap_or(0.0)
@@ -88,7 +102,7 @@ impl SolidOracle {
         let mut search = Search {
             deepest: 0.0,
             tolerance: self.tolerance,
-            pieces_left: MOST_PIECES,
+            pieces_left: 0,
         };
         let bounds = [
             search.deepest_point(&self.body, &self.ground.solid, &pose),
@@ -189,11 +203,8 @@ impl Search {
     /// Looks at a whole surface in the field of a solid, and gives a bound of what it holds. Where
     /// the bound is largest comes first.
     fn deepest_point(&mut self, surface: &Side, field: &ExactSolid, to_field: &DPose3) -> f64 {
-        let mut open = BinaryHeap::from([Candidate {
-            bound: f64::INFINITY,
-            place: Place::Ball(0),
-            guess: 0,
-        }]);
+        self.pieces_left = MOST_PIECES;
+        let mut open = BinaryHeap::from([self.ball(surface, field, to_field, 0, None)]);
         while let Some(Candidate {
             bound,
             place,
@@ -207,15 +218,8 @@ impl Search {
                 Place::Ball(node) => match surface.tree.nodes[node].holds {
                     Holds::Balls(children) => {
                         for child in children {
-                            let ball = &surface.tree.nodes[child];
-                            let center = *to_field * ball.center;
-                            self.pieces_left = self.pieces_left.saturating_sub(1);
-                            let at = field.penetration(center, guess);
-                            open.push(Candidate {
-                                bound: bound.min(at.penetration_m + ball.radius),
-                                place: Place::Ball(child),
-                                guess: at.triangle,
-                            });
+                            let above = Some((bound, guess));
+                            open.push(self.ball(surface, field, to_field, child, above));
                         }
                     }
                     Holds::Triangle(triangle) => {
@@ -236,6 +240,27 @@ impl Search {
             }
         }
         self.deepest
+    }
+
+    /// Looks at the middle of a ball; bound and guess of the one above it are known, unless it is that
+    /// of the whole surface.
+    fn ball(
+        &mut self,
+        surface: &Side,
+        field: &ExactSolid,
+        to_field: &DPose3,
+        node: usize,
+        above: Option<(f64, usize)>,
+    ) -> Candidate {
+        self.pieces_left = self.pieces_left.saturating_sub(1);
+        let ball = &surface.tree.nodes[node];
+        let (bound, guess) = above.unwrap_or((f64::INFINITY, 0));
+        let at = field.penetration(*to_field * ball.center, guess);
+        Candidate {
+            bound: bound.min(at.penetration_m + ball.radius),
+            place: Place::Ball(node),
+            guess: at.triangle,
+        }
     }
 
     /// Looks at the middle of a piece.

@@ -18,17 +18,13 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// Bytes at an address an asset can be read from.
-#[repr(align(64))]
-struct Aligned<B: ?Sized>(B);
-
 /// A torus around the z axis, about a metre wide: written by an example of the builder.
-static TORUS: &Aligned<[u8]> = &Aligned(*include_bytes!("../../../target/torus.vps"));
+static TORUS: &[u8] = vps_core::include_asset!("../../../target/torus.vps");
 
 /// The first thing that is wrong.
 fn check() -> Result<(), i32> {
     let is = |right: bool, number: i32| if right { Ok(()) } else { Err(number) };
-    let torus = Asset::from_bytes(&TORUS.0).map_err(|_| 1)?;
+    let torus = Asset::from_bytes(TORUS).map_err(|_| 1)?;
     let field = torus.voxelmap.trilinear();
     let ground = Cuboid::new(Vec3::new(2.0, 2.0, 0.1));
     let half_height = torus.voxelmap.solid().extents().z * 0.5;

@@ -1,0 +1,159 @@
+//! An algorithm seen from outside: a process that is asked, and ended when it takes too much.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+use serde::de::DeserializeOwned;
+
+use super::Error;
+use super::args::{Args, Name};
+use super::worker::{Asked, Made, Question, Ready};
+
+/// How often a process at work is looked at.
+const WATCH: Duration = Duration::from_millis(20);
+
+/// An algorithm that is prepared, or why it could not be.
+pub(super) struct Candidate {
+    pub(super) name: Name,
+    pub(super) prepare_s: f64,
+    pub(super) made: Result<Made, String>,
+    worker: Worker,
+}
+
+impl Candidate {
+    /// Prepares an algorithm, which takes its part of the budget.
+    pub(super) fn prepare(name: Name, args: &Args) -> Result<Self, Error> {
+        let mut worker = Worker::start(name, args)?;
+        let made: Result<Made, String> = worker.hear().and_then(|Ready| {
+            // Reading the meshes does not count.
+            worker.spent = Duration::ZERO;
+            worker.hear().and_then(|made| made)
+        });
+        let taken_s = worker.spent.as_secs_f64();
+        Ok(Self {
+            name,
+            prepare_s: made.as_ref().map_or(taken_s, |made| made.prepare_s),
+            made,
+            worker,
+        })
+    }
+
+    /// What there is at a pose, or why there is no answer.
+    pub(super) fn ask(&mut self, question: &Question) -> Result<Asked, String> {
+        self.made.as_ref().map_err(String::clone)?;
+        self.worker.tell(question)?;
+        self.worker.hear().and_then(|asked| asked)
+    }
+}
+
+/// A process, the time it has spent, and what it may take.
+struct Worker {
+    child: Child,
+    input: ChildStdin,
+    lines: Receiver<String>,
+    time_limit_s: f64,
+    memory_limit_mib: u64,
+    spent: Duration,
+    /// Why it was ended.
+    ended: Option<String>,
+}
+
+impl Worker {
+    fn start(name: Name, args: &Args) -> Result<Self, Error> {
+        let mut child = Command::new(std::env::current_exe()?)
+            .arg(format!("--worker={name}"))
+            .args(std::env::args_os().skip(1))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()?;
+        let pipes = child.stdin.take().zip(child.stdout.take());
+        let (input, output) = pipes.ok_or("a process without pipes")?;
+        let (sender, lines) = channel();
+        // Ends with the process.
+        std::thread::spawn(move || {
+            for line in BufReader::new(output).lines().map_while(Result::ok) {
+                if sender.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        Ok(Self {
+            child,
+            input,
+            lines,
+            time_limit_s: args.time_limit,
+            memory_limit_mib: args.memory_limit,
+            spent: Duration::ZERO,
+            ended: None,
+        })
+    }
+
+    fn tell(&mut self, question: &Question) -> Result<(), String> {
+        let line = serde_json::to_string(question).map_err(|e| e.to_string())?;
+        // One that has ended is asked in vain; what it ended of is known when it is listened to.
+        let _ = writeln!(self.input, "{line}").and_then(|()| self.input.flush());
+        Ok(())
+    }
+
+    /// Waits for a line, unless it takes more than there is left.
+    fn hear<T: DeserializeOwned>(&mut self) -> Result<T, String> {
+        self.check(Duration::ZERO);
+        let begin = Instant::now();
+        let line = self.wait(begin);
+        self.spent += begin.elapsed();
+        serde_json::from_str(&line?).map_err(|e| e.to_string())
+    }
+
+    fn wait(&mut self, begin: Instant) -> Result<String, String> {
+        loop {
+            if let Some(why) = &self.ended {
+                return Err(why.clone());
+            }
+            match self.lines.recv_timeout(WATCH) {
+                Ok(line) => return Ok(line),
+                Err(RecvTimeoutError::Timeout) => self.check(begin.elapsed()),
+                Err(RecvTimeoutError::Disconnected) => {
+                    let status = self.child.wait().map_err(|e| e.to_string())?;
+                    self.ended = Some(format!("its process ended: {status}"));
+                }
+            }
+        }
+    }
+
+    /// Ends the process if with so much more time it has taken more than it may.
+    fn check(&mut self, more: Duration) {
+        let memory = peak_memory_mib(self.child.id());
+        let (time_s, memory_mib) = (self.time_limit_s, self.memory_limit_mib);
+        if (self.spent + more).as_secs_f64() > time_s {
+            self.end(format!("ended after {time_s} s, its --time-limit"));
+        } else if memory.is_some_and(|mib| mib > memory_mib) {
+            self.end(format!("ended at {memory_mib} MiB, its --memory-limit"));
+        }
+    }
+
+    fn end(&mut self, why: String) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        self.ended = Some(why);
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The most memory a process has had, where the system tells (Linux).
+fn peak_memory_mib(process: u32) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let peak = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: u64 = peak.split_whitespace().next()?.parse().ok()?;
+    Some(kib / 1024)
+}
