@@ -291,7 +291,7 @@ fn most_points(mesh: &Mesh, points: PointCount) -> Result<f64, BuildError> {
             if !(spacing > 0.0 && spacing.is_finite()) {
                 return Err(BuildError::Spacing(spacing));
             }
-            let most = sample::about_count(mesh.area(), spacing);
+            let most = sample::about_count(mesh, spacing);
             if most > f64::from(u32::MAX >> 2) {
                 return Err(BuildError::TooManyPoints {
                     spacing_m: spacing,
