@@ -2,11 +2,12 @@ use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelma
 
 use crate::bends::bends;
 use crate::distance::{Exact, by_gradient_walk};
+use crate::flat::refuse_sheet;
 use crate::layers::layers;
 use crate::mass::{mass_of_field, mass_of_mesh};
 use crate::solid::{Repairs, Sign, Solid, solid};
 use crate::sparse::{Coding, Source, Tolerance, sparse};
-use crate::{Mesh, MeshError, cluster, sample};
+use crate::{Mesh, MeshError, cluster, frame, sample};
 
 /// How fine the voxels are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,6 +190,26 @@ pub enum BuildError {
          same way (see `vps-build inspect`)"
     )]
     Open(usize),
+    /// All in one plane.
+    #[error(
+        "the mesh is a sheet, {} m thick and {} m long: give it a thickness, or look for a vertex \
+         that is far off", *thickness_m as f32, *longest_m as f32
+    )]
+    Sheet {
+        /// Between the two planes that hold all of it.
+        thickness_m: f64,
+        /// The longest side of the box around it.
+        longest_m: f64,
+    },
+    /// Numbers that overflow or vanish in 32 bits.
+    #[error(
+        "volume {volume_m3:e} m³ or inertia of the solid does not fit 32 bits: is a vertex far off, \
+         or the scale wrong?"
+    )]
+    Size {
+        /// Its volume.
+        volume_m3: f64,
+    },
     /// A solid inside out, or none.
     #[error(
         "the mesh encloses no volume: it may be a sheet, or its faces may be turned at random \
@@ -257,7 +278,10 @@ pub fn build(
     if options.branching < 2 {
         return Err(BuildError::Branching(options.branching));
     }
+    refuse_sheet(mesh)?;
     let points = most_points(mesh, options.points)?;
+    let (mesh, origin) = frame::local(mesh, voxel_size(mesh, options)?);
+    let mesh = mesh.as_ref();
     let grid = grid(mesh, options, points)?;
     on_stage(Stage::Voxels);
     let solid = solid(mesh, options.sign, &grid)?;
@@ -274,6 +298,7 @@ pub fn build(
     let tree = cluster::build_tree(&samples, options.branching as usize, options.clustering)?;
     Ok(Built {
         asset: Asset {
+            origin: origin.to_array(),
             voxelmap,
             tree,
             mass,
@@ -311,17 +336,26 @@ fn is_dense(density: Density, voxels: f64) -> bool {
     }
 }
 
-pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
-    let (low, high) = mesh.bounds();
-    let extents = high - low;
+/// Edge of a voxel in metres.
+pub(crate) fn voxel_size(mesh: &Mesh, options: &BuildOptions) -> Result<f64, BuildError> {
     let size = match options.resolution {
         Resolution::VoxelSize(size) => size,
         Resolution::VoxelsAlongLongest(0) => return Err(BuildError::NoVoxels),
-        Resolution::VoxelsAlongLongest(n) => extents.max_element() / f64::from(n),
+        Resolution::VoxelsAlongLongest(n) => {
+            let (low, high) = mesh.bounds();
+            (high - low).max_element() / f64::from(n)
+        }
     };
     if !(size > 0.0 && size.is_finite()) {
         return Err(BuildError::VoxelSize(size));
     }
+    Ok(size)
+}
+
+pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
+    let (low, high) = mesh.bounds();
+    let extents = high - low;
+    let size = voxel_size(mesh, options)?;
     if options.margin == 0 {
         return Err(BuildError::Margin);
     }
@@ -399,7 +433,8 @@ fn voxelmap(
         Encoding::Floats => Coding::Floats,
     };
     // One truncated step, and the rounding of 32-bit coordinates.
-    let rounding = 8.0 * f64::from(f32::EPSILON * bounds.extents().length());
+    let largest_place = bounds.min.abs().max(bounds.max.abs()).length();
+    let rounding = 8.0 * f64::from(f32::EPSILON * largest_place);
     let stored = match coding {
         Coding::Integers(lambda) | Coding::Layers(lambda) => lambda + rounding,
         Coding::Floats => rounding,
