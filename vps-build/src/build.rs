@@ -3,12 +3,13 @@ use vps_core::{Aabb, Accuracy, Asset, Grid, GridError, Store, TreeError, Voxelma
 use crate::bends::bends;
 use crate::bvh::Bvh;
 use crate::distance::{Exact, by_gradient_walk};
+use crate::flat::refuse_sheet;
 use crate::layers::layers;
 use crate::mass::{mass_of_field, mass_of_mesh};
 use crate::solid::{Repairs, Sign, Solid, solid};
 use crate::sparse::{Coding, Source, Tolerance, sparse};
 use crate::thin_walls::ThinWalls;
-use crate::{Mesh, MeshError, cluster, sample};
+use crate::{Mesh, MeshError, cluster, frame, sample};
 
 /// How fine the voxels are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -199,6 +200,26 @@ pub enum BuildError {
          same way (see `vps-build inspect`)"
     )]
     Open(usize),
+    /// All in one plane.
+    #[error(
+        "the mesh is a sheet, {} m thick and {} m long: give it a thickness, or look for a vertex \
+         that is far off", *thickness_m as f32, *longest_m as f32
+    )]
+    Sheet {
+        /// Between the two planes that hold all of it.
+        thickness_m: f64,
+        /// The longest side of the box around it.
+        longest_m: f64,
+    },
+    /// Numbers that overflow or vanish in 32 bits.
+    #[error(
+        "volume {volume_m3:e} m³ or inertia of the solid does not fit 32 bits: is a vertex far off, \
+         or the scale wrong?"
+    )]
+    Size {
+        /// Its volume.
+        volume_m3: f64,
+    },
     /// A solid inside out, or none.
     #[error(
         "the mesh encloses no volume: it may be a sheet, or its faces may be turned at random \
@@ -271,12 +292,14 @@ pub fn build(
     if options.branching < 2 {
         return Err(BuildError::Branching(options.branching));
     }
+    refuse_sheet(mesh)?;
     let points = most_points(mesh, options.points)?;
-    let first_grid = grid(mesh, options, points)?;
+    let (mesh, origin) = frame::local(mesh, voxel_size(mesh, options)?);
+    let mesh = mesh.as_ref();
+    let mut grid = self::grid(mesh, options, points)?;
     on_stage(Stage::Solid);
-    let mut solid = solid(mesh, options.sign, &first_grid)?;
+    let mut solid = solid(mesh, options.sign, &grid)?;
     on_stage(Stage::Voxels);
-    let mut grid = first_grid;
     let bvh = Bvh::new(&solid.mesh);
     if options.resolution == Resolution::Auto
         && let Some(finer) = finer_grid(mesh, &solid.mesh, &bvh, &grid, options, points)?
@@ -301,6 +324,7 @@ pub fn build(
     let thin_walls = ThinWalls::of(&solid.mesh, &bvh, &points, voxel_size, Some(&voxelmap));
     Ok(Built {
         asset: Asset {
+            origin: origin.to_array(),
             voxelmap,
             tree,
             mass,
@@ -335,7 +359,7 @@ fn finer_grid(
             resolution: Resolution::VoxelSize(size),
             ..options.clone()
         };
-        match grid(mesh, &options, points) {
+        match self::grid(mesh, &options, points) {
             Ok(grid) => return Ok(Some(grid)),
             Err(BuildError::Memory { .. }) => size *= 1.1,
             Err(error) => return Err(error),
@@ -353,7 +377,7 @@ fn most_points(mesh: &Mesh, points: PointCount) -> Result<f64, BuildError> {
             if !(spacing > 0.0 && spacing.is_finite()) {
                 return Err(BuildError::Spacing(spacing));
             }
-            let most = sample::about_count(mesh.area(), spacing);
+            let most = sample::about_count(mesh, spacing);
             if most > f64::from(u32::MAX >> 2) {
                 return Err(BuildError::TooManyPoints {
                     spacing_m: spacing,
@@ -373,18 +397,26 @@ fn is_dense(density: Density, voxels: f64) -> bool {
     }
 }
 
-pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
+/// Edge of a voxel in metres.
+pub(crate) fn voxel_size(mesh: &Mesh, options: &BuildOptions) -> Result<f64, BuildError> {
     let (low, high) = mesh.bounds();
-    let extents = high - low;
+    let longest = (high - low).max_element();
     let size = match options.resolution {
         Resolution::VoxelSize(size) => size,
         Resolution::VoxelsAlongLongest(0) => return Err(BuildError::NoVoxels),
-        Resolution::VoxelsAlongLongest(n) => extents.max_element() / f64::from(n),
-        Resolution::Auto => extents.max_element() / f64::from(AUTO_VOXELS),
+        Resolution::VoxelsAlongLongest(n) => longest / f64::from(n),
+        Resolution::Auto => longest / f64::from(AUTO_VOXELS),
     };
     if !(size > 0.0 && size.is_finite()) {
         return Err(BuildError::VoxelSize(size));
     }
+    Ok(size)
+}
+
+pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<Grid, BuildError> {
+    let (low, high) = mesh.bounds();
+    let extents = high - low;
+    let size = voxel_size(mesh, options)?;
     if options.margin == 0 {
         return Err(BuildError::Margin);
     }
@@ -462,7 +494,8 @@ fn voxelmap(
         Encoding::Floats => Coding::Floats,
     };
     // One truncated step, and the rounding of 32-bit coordinates.
-    let rounding = 8.0 * f64::from(f32::EPSILON * bounds.extents().length());
+    let largest_place = bounds.min.abs().max(bounds.max.abs()).length();
+    let rounding = 8.0 * f64::from(f32::EPSILON * largest_place);
     let stored = match coding {
         Coding::Integers(lambda) | Coding::Layers(lambda) => lambda + rounding,
         Coding::Floats => rounding,

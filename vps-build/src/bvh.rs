@@ -45,6 +45,8 @@ const FITTED: usize = 256;
 
 /// Finds the triangle of a mesh that is closest to a point.
 pub(crate) struct Bvh {
+    /// The discs are given from here, the middle of the mesh, in 32 bits.
+    origin: DVec3,
     nodes: Vec<Node>,
     /// Corners of all triangles, close to each other where the triangles are.
     corners: Vec<[DVec3; 3]>,
@@ -66,17 +68,21 @@ pub(crate) struct Closest {
 
 impl Bvh {
     pub(crate) fn new(mesh: &Mesh) -> Self {
+        let (low, high) = mesh.bounds();
+        let origin = low.midpoint(high);
+        let about = &About { mesh, origin };
         let mut items: Vec<_> = (0..mesh.triangles().len())
-            .map(|t| Item::new(mesh, t))
+            .map(|t| Item::new(about, t))
             .collect();
         let mut nodes = Vec::new();
-        subtree(mesh, &mut items, 0, &mut nodes);
+        subtree(about, &mut items, 0, &mut nodes);
         let triangles: Vec<u32> = items.iter().map(|item| item.triangle).collect();
         let mut slots = vec![0; triangles.len()];
         for (slot, &triangle) in triangles.iter().enumerate() {
             slots[triangle as usize] = slot as u32;
         }
         Self {
+            origin,
             nodes,
             corners: triangles
                 .iter()
@@ -96,9 +102,10 @@ impl Bvh {
         };
         let (squared, on) = on_slot(self.slots[guess as usize] as usize);
         let mut best = (squared, on, guess);
-        let at = point.as_vec3().to_array().map(Vec4::splat);
+        let from_origin = point - self.origin;
+        let at = from_origin.as_vec3().to_array().map(Vec4::splat);
         // Discs further away, in squared 32-bit numbers, hold nothing closer.
-        let rounding = 4.0 * f64::from(f32::EPSILON) * point.abs().max_element();
+        let rounding = 4.0 * f64::from(f32::EPSILON) * from_origin.abs().max_element();
         let pruning_limit = |squared: f64| {
             let distance = squared.sqrt() + rounding;
             (distance * distance * (1.0 + 1e-5)) as f32 + f32::MIN_POSITIVE
@@ -209,7 +216,7 @@ struct Disc {
 
 impl Disc {
     /// Around some triangles: across their mean normal, or around their box if they are many.
-    fn around(mesh: &Mesh, items: &[Item]) -> Self {
+    fn around(about: &About<'_>, items: &[Item]) -> Self {
         let (low, high) = bounds(items);
         let (low, high) = (low.as_dvec3(), high.as_dvec3());
         let (center, half) = (low.midpoint(high), (high - low) * 0.5);
@@ -224,7 +231,7 @@ impl Disc {
         let corners = || {
             items
                 .iter()
-                .map(|item| mesh.corners(item.triangle as usize))
+                .map(|item| about.corners(item.triangle as usize))
         };
         let axis: DVec3 = corners().map(|[a, b, c]| (b - a).cross(c - a)).sum();
         let axis = axis.normalize_or_zero();
@@ -245,6 +252,18 @@ impl Disc {
     }
 }
 
+/// A mesh seen from its middle.
+struct About<'m> {
+    mesh: &'m Mesh,
+    origin: DVec3,
+}
+
+impl About<'_> {
+    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.mesh.corners(triangle).map(|v| v - self.origin)
+    }
+}
+
 /// A triangle while the tree is made.
 #[derive(Clone, Copy)]
 struct Item {
@@ -254,8 +273,8 @@ struct Item {
 }
 
 impl Item {
-    fn new(mesh: &Mesh, triangle: usize) -> Self {
-        let [a, b, c] = mesh.corners(triangle).map(DVec3::as_vec3);
+    fn new(about: &About<'_>, triangle: usize) -> Self {
+        let [a, b, c] = about.corners(triangle).map(DVec3::as_vec3);
         Self {
             low: a.min(b).min(c),
             high: a.max(b).max(c),
@@ -273,7 +292,7 @@ fn bounds(items: &[Item]) -> (Vec3, Vec3) {
 }
 
 /// Sorts the triangles of a subtree and appends its nodes, the root first.
-fn subtree(mesh: &Mesh, items: &mut [Item], first: usize, nodes: &mut Vec<Node>) {
+fn subtree(about: &About<'_>, items: &mut [Item], first: usize, nodes: &mut Vec<Node>) {
     let root = nodes.len();
     nodes.push(Node::EMPTY);
     let mut parts = vec![items];
@@ -290,7 +309,7 @@ fn subtree(mesh: &Mesh, items: &mut [Item], first: usize, nodes: &mut Vec<Node>)
     let mut subtrees = vec![Vec::new(); WIDTH];
     if is_large {
         let parts = parts.par_iter_mut().zip(&starts).zip(&mut subtrees);
-        parts.for_each(|((part, &start), nodes)| subtree(mesh, part, start, nodes));
+        parts.for_each(|((part, &start), nodes)| subtree(about, part, start, nodes));
     }
     for (lane, ((part, start), mut made)) in parts.into_iter().zip(starts).zip(subtrees).enumerate()
     {
@@ -298,7 +317,7 @@ fn subtree(mesh: &Mesh, items: &mut [Item], first: usize, nodes: &mut Vec<Node>)
             continue;
         }
         let offset = nodes.len() as u32;
-        nodes[root].discs[lane / 4].set(lane % 4, &Disc::around(mesh, part));
+        nodes[root].discs[lane / 4].set(lane % 4, &Disc::around(about, part));
         nodes[root].children[lane] = match part {
             [_] => TRIANGLE | start as u32,
             _ => offset,
@@ -311,7 +330,7 @@ fn subtree(mesh: &Mesh, items: &mut [Item], first: usize, nodes: &mut Vec<Node>)
             }
             nodes.append(&mut made);
         } else if part.len() > 1 {
-            subtree(mesh, part, start, nodes);
+            subtree(about, part, start, nodes);
         }
     }
 }

@@ -2,13 +2,14 @@ use std::borrow::Cow;
 
 use glamx::DVec3;
 
-use crate::build::grid;
+use crate::build::{grid, voxel_size};
 use crate::bvh::Bvh;
+use crate::flat::refuse_sheet;
 use crate::health::UnionFind;
 use crate::solid::{solid, surface};
 use crate::solid_angle::SolidAngle;
 use crate::winding::Lines;
-use crate::{BuildError, BuildOptions, Mesh, Repairs, Sign};
+use crate::{BuildError, BuildOptions, Mesh, Repairs, Sign, frame};
 
 /// The solid a mesh means, as exactly as it is known before any voxel: distances to its triangles,
 /// and winding numbers. It is what the values of a voxelmap are measured against.
@@ -42,14 +43,17 @@ impl ExactSolid {
     /// # Errors
     /// When the mesh encloses nothing.
     pub fn new(mesh: &Mesh, sign: Sign) -> Result<Self, BuildError> {
-        let grid = grid(mesh, &BuildOptions::default(), 0.0)?;
-        let solid = solid(mesh, sign, &grid)?;
-        let shown = solid.mesh.into_owned();
+        refuse_sheet(mesh)?;
+        let options = BuildOptions::default();
+        let (local, origin) = frame::local(mesh, voxel_size(mesh, &options)?);
+        let grid = grid(&local, &options, 0.0)?;
+        let solid = solid(&local, sign, &grid)?;
+        let shown = solid.mesh.moved(origin);
         // Winding numbers are those of the closed surface, with what is hidden within the solid.
         let closed = if solid.is_closed {
             shown.clone()
         } else {
-            surface(mesh, sign, &grid, &mut Repairs::default())?.into_owned()
+            surface(&local, sign, &grid, &mut Repairs::default())?.moved(origin)
         };
         let inside = if solid.repairs.left_open {
             Inside::Generalized(SolidAngle::of(Cow::Owned(closed)))
@@ -143,6 +147,23 @@ mod tests {
             let found = solid.penetration(p, i as usize).penetration_m;
             assert!((found - expected).abs() < 1e-12, "{p}: {found}, {expected}");
         }
+    }
+
+    #[test]
+    fn far_away_it_is_as_exact() {
+        let cuboid = Mesh::cuboid([2.0, 1.0, 3.0]).unwrap();
+        let at = DVec3::new(5e6, -4e6, 3e6);
+        let far = Mesh::new(&moved(&cuboid, at), cuboid.triangles()).unwrap();
+        let solid = ExactSolid::new(&far, Sign::Auto).unwrap();
+        for (place, expected) in [
+            (DVec3::ZERO, 0.5),
+            (DVec3::Z * 1.75, -0.25),
+            (DVec3::X, 0.0),
+        ] {
+            let found = solid.penetration(at + place, 0).penetration_m;
+            assert!((found - expected).abs() < 1e-8, "{place}: {found}");
+        }
+        assert_eq!(solid.surface().bounds(), far.bounds());
     }
 
     #[test]

@@ -43,6 +43,8 @@ mod distance;
 mod edges;
 mod exact_solid;
 mod file;
+mod flat;
+mod frame;
 mod halves;
 mod health;
 mod kdtree;

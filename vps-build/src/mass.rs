@@ -87,6 +87,10 @@ fn properties(
     if !sound {
         return Err(BuildError::NotSolid);
     }
+    let fits = |value: f64| (value as f32).is_finite() && (value as f32) > 0.0;
+    if !(fits(volume) && inertia[..3].iter().all(|&i| fits(i))) {
+        return Err(BuildError::Size { volume_m3: volume });
+    }
     Ok(MassProperties {
         volume: volume as f32,
         center_of_mass: (origin + center).as_vec3().to_array(),
@@ -132,6 +136,15 @@ mod tests {
         assert_eq!(b.center_of_mass, [5.0, -7.0, 9.0]);
         for (a, b) in a.inertia.iter().zip(b.inertia) {
             assert!((a - b).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_32_bits_is_refused() {
+        for size in [1e9, 1e-12] {
+            let mesh = Mesh::cuboid([size; 3]).unwrap();
+            let error = mass_properties(&mesh).unwrap_err();
+            assert!(matches!(error, BuildError::Size { .. }), "{error}");
         }
     }
 

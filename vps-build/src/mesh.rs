@@ -17,9 +17,15 @@ pub enum MeshError {
     /// Nothing to build from.
     #[error("the mesh has no triangles")]
     NoTriangles,
-    /// A coordinate is NaN or infinite.
-    #[error("vertex {0} (counted from 0) is not finite")]
-    Vertex(usize),
+    /// A vertex that triangles use is NaN, infinite, or further from the origin than
+    /// [`Mesh::LARGEST`].
+    #[error("vertex {vertex} (counted from 0) {}", misplacement(*place).unwrap_or_default())]
+    Vertex {
+        /// The vertex.
+        vertex: usize,
+        /// Where it is.
+        place: DVec3,
+    },
     /// A triangle refers to a vertex that is not there.
     #[error(
         "triangle {triangle} (counted from 0) refers to vertex {vertex}, but there are {count}"
@@ -33,26 +39,36 @@ pub enum MeshError {
         count: usize,
     },
     /// All triangles lie in a point or on a line along an axis.
-    #[error("the mesh has no extent: its triangles span {0} x {1} x {2} m")]
+    #[error("the mesh has no extent: its triangles span {0:e} x {1:e} x {2:e} m")]
     NoExtent(f64, f64, f64),
     /// A scale must be positive.
     #[error("the scale must be positive and finite, not {0}")]
     Scale(f64),
 }
 
+/// What is wrong with the place of a vertex, if anything.
+pub(crate) fn misplacement(place: DVec3) -> Option<&'static str> {
+    if !place.is_finite() {
+        return Some("is not finite");
+    }
+    let is_far = place.abs().max_element() > Mesh::LARGEST;
+    is_far.then_some("is further from the origin than any solid: coordinates reach up to 1e15")
+}
+
 impl Mesh {
+    /// The largest coordinate. There, numbers are an eighth apart, and areas still fit 32 bits. A
+    /// mesh smaller than its reciprocal counts as a point.
+    pub const LARGEST: f64 = 1e15;
+
     /// A mesh of `triangles` over `vertices` (metres), counter-clockwise seen from outside.
     /// Vertices at the same place become one, so that triangles which meet there are neighbours.
     ///
     /// # Errors
-    /// When there is no triangle, a coordinate is not finite, an index is out of range, or the
-    /// mesh has no extent along two axes or more.
+    /// When there is no triangle, a vertex of one is not finite or too far away, an index is out of
+    /// range, or the mesh has no extent along two axes or more.
     pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::NoTriangles);
-        }
-        if let Some(i) = vertices.iter().position(|v| !v.is_finite()) {
-            return Err(MeshError::Vertex(i));
         }
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
@@ -62,10 +78,18 @@ impl Mesh {
                     count: vertices.len(),
                 });
             }
+            for &v in corners {
+                let place = vertices[v as usize];
+                if misplacement(place).is_some() {
+                    let vertex = v as usize;
+                    return Err(MeshError::Vertex { vertex, place });
+                }
+            }
         }
         let mesh = Self::welded(vertices, triangles);
         let extents = mesh.bounds().1 - mesh.bounds().0;
-        if extents.to_array().iter().filter(|&&e| e > 0.0).count() < 2 {
+        let is_some = |&&extent: &&f64| extent > 1.0 / Self::LARGEST;
+        if extents.to_array().iter().filter(is_some).count() < 2 {
             return Err(MeshError::NoExtent(extents.x, extents.y, extents.z));
         }
         Ok(mesh)
@@ -204,6 +228,15 @@ impl Mesh {
         Self::new(&vertices, &self.triangles)
     }
 
+    /// The mesh moved by so many metres. It may become a little flatter or more bent by rounding;
+    /// its triangles stay what they are.
+    pub(crate) fn moved(&self, by: DVec3) -> Self {
+        Self {
+            vertices: self.vertices.iter().map(|&v| v + by).collect(),
+            triangles: self.triangles.clone(),
+        }
+    }
+
     /// All vertices in metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
@@ -289,8 +322,23 @@ mod tests {
             error(&v, &[[0, 1, 9]]),
             MeshError::Index { vertex: 9, .. }
         ));
-        assert_eq!(error(&[DVec3::NAN], &[[0, 0, 0]]), MeshError::Vertex(0));
+        for misplaced in [DVec3::NAN, DVec3::Y * 1.1e15] {
+            let nonsense = [v[0], v[1], misplaced];
+            let error = error(&nonsense, &[[0, 1, 2]]);
+            assert!(
+                matches!(error, MeshError::Vertex { vertex: 2, .. }),
+                "{error}"
+            );
+            // What no triangle uses does not matter.
+            let unused = [v[0], v[1], v[2], misplaced];
+            assert!(Mesh::new(&unused, &[[0, 1, 2]]).is_ok());
+        }
         assert!(matches!(error(&v, &[[0, 1, 3]]), MeshError::NoExtent(..)));
+        let tiny = v.map(|v| v * 1e-305);
+        assert!(matches!(
+            error(&tiny, &[[0, 1, 2]]),
+            MeshError::NoExtent(..)
+        ));
         let mesh = Mesh::new(&v, &[[0, 1, 2]]).unwrap();
         assert!(matches!(mesh.scaled(0.0), Err(MeshError::Scale(_))));
     }

@@ -1,7 +1,9 @@
 //! Where each voxel lies (section 2.1.1): on the surface, by triangle-box overlap; inside or
 //! outside, by winding numbers or by a scan-line fill.
 
-use glamx::DVec3;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glamx::{DVec3, I64Vec3};
 use rayon::prelude::*;
 use vps_core::Grid;
 
@@ -107,22 +109,19 @@ impl Places {
         }
         let origin = self.grid.origin().as_dvec3();
         let size = f64::from(self.grid.voxel_size());
-        let touched: Vec<Vec<u32>> = (0..mesh.triangles().len())
-            .collect::<Vec<_>>()
-            .par_chunks(1024)
-            .map(|triangles| {
-                let mut touched = Vec::new();
-                for &t in triangles {
-                    for_each_overlapped(mesh.corners(t), origin, size, |cell, _| {
-                        let voxel = cell.map(|c| u32::try_from(c).unwrap_or(u32::MAX));
-                        touched.extend(self.index(voxel).map(|i| i as u32));
-                    });
+        let touched: Vec<_> = self.places.iter().map(|_| AtomicBool::new(false)).collect();
+        (0..mesh.triangles().len()).into_par_iter().for_each(|t| {
+            for_each_overlapped(mesh.corners(t), origin, size, |cell, _| {
+                let voxel = cell.map(|c| u32::try_from(c).unwrap_or(u32::MAX));
+                if let Some(i) = self.index(voxel) {
+                    touched[i].store(true, Ordering::Relaxed);
                 }
-                touched
-            })
-            .collect();
-        for i in touched.into_iter().flatten() {
-            self.places[i as usize] = Place::Surface;
+            });
+        });
+        for (place, touched) in self.places.iter_mut().zip(touched) {
+            if touched.into_inner() {
+                *place = Place::Surface;
+            }
         }
         self
     }
@@ -166,7 +165,7 @@ impl Places {
 }
 
 /// Calls `visit` with every cell of a cubical lattice that shares a point with the triangle, and
-/// with the cell's centre.
+/// with the cell's centre. Takes time for those cells, not for all in the box of the triangle.
 pub(crate) fn for_each_overlapped(
     triangle: [DVec3; 3],
     origin: DVec3,
@@ -177,22 +176,35 @@ pub(crate) fn for_each_overlapped(
     let nudge = DVec3::splat(1e-9);
     let low = (a.min(b).min(c) - nudge).floor().as_i64vec3();
     let high = (a.max(b).max(c) + nudge).floor().as_i64vec3();
+    let steps = high - low;
     // What lies in one row of cells passes through all between its ends.
-    let wide = (high - low)
-        .to_array()
-        .into_iter()
-        .filter(|&n| n > 0)
-        .count();
-    let in_a_row = wide <= 1;
-    for z in low.z..=high.z {
-        for y in low.y..=high.y {
-            for x in low.x..=high.x {
-                let center = origin + (DVec3::new(x as f64, y as f64, z as f64) + 0.5) * size;
-                if in_a_row || sat::overlaps(triangle, center, 0.5 * size) {
-                    visit([x, y, z], center);
-                }
-            }
+    if steps.to_array().into_iter().filter(|&n| n > 0).count() <= 1 {
+        for i in 0..=steps.max_element() {
+            let cell = (low + i).min(high);
+            visit(cell.to_array(), origin + (cell.as_dvec3() + 0.5) * size);
         }
+        return;
+    }
+    // Cubes of 2^level cells that share a point with the triangle, in halves.
+    let level = (steps.max_element() as u64 + 1)
+        .next_power_of_two()
+        .trailing_zeros();
+    let mut cubes = vec![(low, level)];
+    while let Some((first, level)) = cubes.pop() {
+        let cells = (1_i64 << level) as f64;
+        let center = origin + (first.as_dvec3() + 0.5 * cells) * size;
+        if first.cmpgt(high).any() || !sat::overlaps(triangle, center, 0.5 * cells * size) {
+            continue;
+        }
+        if level == 0 {
+            visit(first.to_array(), center);
+            continue;
+        }
+        let half = 1_i64 << (level - 1);
+        cubes.extend((0..8_i64).rev().map(|i| {
+            let step = I64Vec3::new(i & 1, i >> 1 & 1, i >> 2 & 1) * half;
+            (first + step, level - 1)
+        }));
     }
 }
 
@@ -265,6 +277,48 @@ mod tests {
     use vps_core::Vec3;
 
     use super::*;
+
+    /// In the order of the descent, and as by looking at each cell of the box.
+    #[test]
+    fn the_cells_of_a_triangle_are_found() {
+        let place = |seed: f64| {
+            DVec3::new(
+                (seed * 12.9).sin(),
+                (seed * 78.2).sin(),
+                (seed * 37.7).sin(),
+            ) * 6.0
+        };
+        for i in 0..200 {
+            let t = f64::from(i) * 3.0;
+            let mut triangle = [place(t), place(t + 1.0), place(t + 2.0)];
+            if i % 4 == 0 {
+                // A needle.
+                triangle[2] = triangle[0].lerp(triangle[1], 0.3);
+            }
+            let (origin, size) = (DVec3::splat(-7.0), 0.5);
+            let mut found = Vec::new();
+            for_each_overlapped(triangle, origin, size, |cell, center| {
+                assert!(
+                    center.distance(origin + (I64Vec3::from(cell).as_dvec3() + 0.5) * size) < 1e-12
+                );
+                found.push(cell);
+            });
+            let mut expected = Vec::new();
+            for z in 0..28 {
+                for y in 0..28 {
+                    for x in 0..28 {
+                        let center = origin + (I64Vec3::new(x, y, z).as_dvec3() + 0.5) * size;
+                        if sat::overlaps(triangle, center, 0.5 * size) {
+                            expected.push([x, y, z]);
+                        }
+                    }
+                }
+            }
+            found.sort_unstable();
+            expected.sort_unstable();
+            assert_eq!(found, expected);
+        }
+    }
 
     /// The corner of the mesh marks the corner of the grid, where a fill might have started.
     #[test]

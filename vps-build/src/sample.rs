@@ -1,6 +1,8 @@
 //! The pointshell (section 2.1.2): centres of surface voxels projected onto the triangles, kept
 //! when they are not too close to each other.
 
+use std::ops::Range;
+
 use glamx::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -36,32 +38,33 @@ pub(crate) struct Samples {
 /// How many times its spacing squared a point covers, about.
 const COVERED: f64 = 1.5;
 
-/// About how many points there are on so much area.
-pub(crate) fn about_count(area: f64, spacing: f64) -> f64 {
-    area / (COVERED * spacing * spacing)
+/// About how many points there are with so much between them, or more than that are there for sure.
+pub(crate) fn about_count(mesh: &Mesh, spacing: f64) -> f64 {
+    let on_area = mesh.area() / (COVERED * spacing * spacing);
+    on_area.max(longest_edge(mesh) / (2.0 * REACH * spacing))
 }
 
 /// Samples the mesh, with normals from the field.
 pub(crate) fn sample(mesh: &Mesh, count: PointCount, map: &Voxelmap<'_>) -> Samples {
-    let positions = match count {
-        PointCount::Spacing(spacing) => spread(mesh, spacing).points,
+    let spaced = match count {
+        PointCount::Spacing(spacing) => spread(mesh, spacing),
         PointCount::About(count) => about(mesh, count),
     };
-    let normals = inward_normals(mesh, &positions, map);
-    let areas = shares_of_area(mesh, &positions, &normals);
+    let normals = inward_normals(&spaced, map);
+    let areas = shares_of_area(mesh, &spaced, &normals);
     Samples {
-        positions,
+        positions: spaced.points,
         normals,
         areas,
     }
 }
 
 /// How much of the surface is closest to each point, of those on its side of a thin wall. Triangles
-/// are cut until their edges are shorter than half the usual distance of two points.
-fn shares_of_area(mesh: &Mesh, positions: &[DVec3], normals: &[Vec3]) -> Vec<f32> {
+/// are cut until their edges are shorter than half the distance of two points.
+fn shares_of_area(mesh: &Mesh, spaced: &Spaced, normals: &[Vec3]) -> Vec<f32> {
+    let positions = &spaced.points;
     let by_place = KdTree::new(positions);
-    let covered = mesh.area() / positions.len() as f64;
-    let longest = 0.25 * covered / COVERED;
+    let longest = 0.25 * spaced.spacing * spaced.spacing;
     let triangles: Vec<_> = (0..mesh.triangles().len()).collect();
     let shares: Vec<Vec<(usize, f64)>> = triangles
         .par_chunks(256)
@@ -111,19 +114,21 @@ fn for_each_piece(triangle: [DVec3; 3], longest: f64, visit: &mut impl FnMut([DV
 }
 
 /// As close to `count` points as some spacing gives.
-fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
+fn about(mesh: &Mesh, count: u32) -> Spaced {
     let target = f64::from(count);
-    let mut spacing = (mesh.area() / (COVERED * target)).sqrt();
+    // With less there are more points along the longest edge alone, however little area there is.
+    let least = longest_edge(mesh) / (2.0 * REACH * target);
+    let mut spacing = (mesh.area() / (COVERED * target)).sqrt().max(least);
     // Spacings that gave too many points and too few; the truth lies between.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
     let mut last: Option<(f64, f64)> = None;
-    let mut best: Option<(f64, Vec<DVec3>)> = None;
+    let mut best: Option<(f64, Spaced)> = None;
     for round in 0..MOST_ROUNDS {
-        let positions = spread(mesh, spacing).points;
-        let found = positions.len() as f64;
+        let spaced = spread(mesh, spacing);
+        let found = spaced.points.len() as f64;
         let off = (found - target).abs();
         if best.as_ref().is_none_or(|(least, ..)| off < *least) {
-            best = Some((off, positions));
+            best = Some((off, spaced));
         }
         let tolerance = if round * u64::from(count) < CHEAP_POINTS {
             STRICT_TOLERANCE
@@ -150,8 +155,21 @@ fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
         if !(too_small < spacing && spacing < too_large) {
             spacing = f64::midpoint(too_small, too_large);
         }
+        spacing = spacing.max(least);
     }
     best.expect("at least one round").1
+}
+
+/// How many spacings a place of the surface may be from the closest point: less than one, and the
+/// way from the centre of a voxel to the triangle and on to the place, each half of a diagonal.
+const REACH: f64 = 2.23;
+
+fn longest_edge(mesh: &Mesh) -> f64 {
+    let longest = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    };
+    (0..mesh.triangles().len()).map(longest).fold(0.0, f64::max)
 }
 
 /// Points no closer than `spacing` to each other, but for those on the two sides of a thin wall;
@@ -159,34 +177,56 @@ fn about(mesh: &Mesh, count: u32) -> Vec<DVec3> {
 pub(crate) fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
     let size = spacing / ALPHA;
     let origin = mesh.bounds().0;
-    let mut kept = Spaced::new(spacing);
-    let triangles: Vec<_> = (0..mesh.triangles().len()).collect();
-    // So many triangles at a time that their candidates, however many, take little memory.
-    for triangles in triangles.chunks(TRIANGLES_AT_ONCE) {
-        let candidates: Vec<Vec<_>> = triangles
-            .par_chunks(TRIANGLES_AT_ONCE / 64)
+    let mut kept = Spaced::new(spacing, origin);
+    // A few pieces at a time, so that their candidates, however many, take little memory.
+    for pieces in pieces(mesh, size).chunks(PIECES_AT_ONCE) {
+        let candidates: Vec<Vec<_>> = pieces
+            .par_iter()
             .map(|triangles| {
                 let mut candidates = Vec::new();
-                for &t in triangles {
+                for t in triangles.clone() {
                     let triangle = mesh.corners(t);
                     let [a, b, c] = triangle;
                     let normal = (b - a).cross(c - a).normalize_or_zero();
-                    for_each_overlapped(triangle, origin, size, |_, center| {
-                        candidates.push((closest_point(triangle, center), normal));
+                    let first = candidates.len();
+                    for_each_overlapped(triangle, origin, size, |[x, y, z], center| {
+                        candidates.push(([z, y, x], closest_point(triangle, center), normal));
                     });
+                    // Row by row, so that neighbours offer their points one after the other.
+                    candidates[first..].sort_unstable_by_key(|candidate| candidate.0);
                 }
                 candidates
             })
             .collect();
-        for (point, normal) in candidates.into_iter().flatten() {
+        for (_, point, normal) in candidates.into_iter().flatten() {
             kept.offer(point, normal);
         }
     }
     kept
 }
 
-/// How many triangles offer their points in parallel before they are chosen from.
-const TRIANGLES_AT_ONCE: usize = 1 << 14;
+/// How many pieces offer their points in parallel before they are chosen from.
+const PIECES_AT_ONCE: usize = 64;
+
+/// About how many cells the triangles of a piece overlap, unless it is a single one.
+const CELLS_OF_PIECE: f64 = (1 << 12) as f64;
+
+/// The triangles in pieces of about the same work.
+fn pieces(mesh: &Mesh, size: f64) -> Vec<Range<usize>> {
+    let mut pieces = Vec::new();
+    let (mut start, mut cells) = (0, 0.0);
+    for t in 0..mesh.triangles().len() {
+        let [a, b, c] = mesh.corners(t);
+        let around = a.distance(b) + b.distance(c) + c.distance(a);
+        cells += 1.0 + around / size + (b - a).cross(c - a).length() / (size * size);
+        if cells >= CELLS_OF_PIECE {
+            pieces.push(start..t + 1);
+            (start, cells) = (t + 1, 0.0);
+        }
+    }
+    pieces.push(start..mesh.triangles().len());
+    pieces
+}
 
 /// Points whose triangles face away from each other by more than this cosine are not neighbours,
 /// however close: they lie on the two sides of a thin wall.
@@ -202,12 +242,12 @@ pub(crate) struct Spaced {
 }
 
 impl Spaced {
-    fn new(spacing: f64) -> Self {
+    fn new(spacing: f64, origin: DVec3) -> Self {
         Self {
             spacing,
             points: Vec::new(),
             normals: Vec::new(),
-            cells: Cells::new(spacing),
+            cells: Cells::new(spacing, origin),
         }
     }
 
@@ -229,6 +269,7 @@ impl Spaced {
 /// Numbered points by the cells of a lattice they lie in.
 struct Cells {
     size: f64,
+    origin: DVec3,
     /// The last point of each cell.
     last: FxHashMap<[i32; 3], u32>,
     /// For each point the one before it in its cell, or [`NO_POINT`].
@@ -238,9 +279,10 @@ struct Cells {
 const NO_POINT: u32 = u32::MAX;
 
 impl Cells {
-    fn new(size: f64) -> Self {
+    fn new(size: f64, origin: DVec3) -> Self {
         Self {
             size,
+            origin,
             last: FxHashMap::default(),
             before: Vec::new(),
         }
@@ -248,7 +290,8 @@ impl Cells {
 
     fn cell(&self, point: DVec3) -> [i32; 3] {
         // Far away, where numbers saturate, cells become one.
-        (point / self.size).to_array().map(|c| c.floor() as i32)
+        let at = (point - self.origin) / self.size;
+        at.to_array().map(|c| c.floor() as i32)
     }
 
     /// Adds the next point.
@@ -287,7 +330,7 @@ impl Cells {
 pub(crate) fn opposed_within(mesh: &Mesh, thickness: f64) -> f64 {
     // Fine enough that behind every thin place there is a point almost opposite.
     let samples = spread(mesh, 0.5 * thickness);
-    let mut cells = Cells::new(thickness);
+    let mut cells = Cells::new(thickness, mesh.bounds().0);
     for &point in &samples.points {
         cells.push(point);
     }
@@ -306,20 +349,20 @@ pub(crate) fn opposed_within(mesh: &Mesh, thickness: f64) -> f64 {
 }
 
 /// The gradient of the field at each point; where it has none, in the middle of a thin wall, the
-/// normal of the triangle closest to the point, turned inwards.
-fn inward_normals(mesh: &Mesh, positions: &[DVec3], map: &Voxelmap<'_>) -> Vec<Vec3> {
+/// normal of the triangle the point lies on, turned inwards.
+fn inward_normals(spaced: &Spaced, map: &Voxelmap<'_>) -> Vec<Vec3> {
     let field = map.trilinear();
-    let normal = |&p: &DVec3| {
-        let inward = field.inward_direction(p.as_vec3());
+    let normal = |(point, outward): (&DVec3, &DVec3)| {
+        let inward = field.inward_direction(point.as_vec3());
         if inward != Vec3::ZERO {
             return inward;
         }
-        let closest = (0..mesh.triangles().len()).min_by(|&a, &b| {
-            let distance = |t: usize| closest_point(mesh.corners(t), p).distance_squared(p);
-            distance(a).total_cmp(&distance(b))
-        });
-        let [a, b, c] = mesh.corners(closest.expect("a mesh has triangles"));
-        (c - a).cross(b - a).normalize_or(DVec3::X).as_vec3()
+        (-*outward).normalize_or(DVec3::X).as_vec3()
     };
-    positions.iter().map(normal).collect()
+    spaced
+        .points
+        .iter()
+        .zip(&spaced.normals)
+        .map(normal)
+        .collect()
 }

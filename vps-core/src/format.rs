@@ -21,7 +21,7 @@
 //!
 //! | section | an element | bytes |
 //! |---|---|---|
-//! | parameters | see below | 112 |
+//! | parameters | see below | 136 |
 //! | values v of the voxelmap, in the order of its [`Store`] | i16 or f32 | 2 or 4 |
 //! | bends, one for each cell of 8 x 8 x 8 voxels (see [`Voxelmap::new`]) | u8 | 1 |
 //! | groups of cells | a [`CellGroup`]: two times bits u64, refined before u32, zero u32 | 24 |
@@ -36,14 +36,15 @@
 //!
 //! | bytes | what |
 //! |---|---|
-//! | 0..12 | voxels along x, y, z (u32) |
-//! | 12..24 | lowest corner of the grid (f32, as all that follow) |
-//! | 24..28 | voxel size s |
-//! | 28..32 | σ, what a step of a value is worth |
-//! | 32..56 | lowest and highest corner of the box of the mesh |
-//! | 56..68 | error near the surface, error elsewhere, where near ends (see [`Accuracy`]) |
-//! | 68..108 | [`MassProperties`]: volume, centre, inertia xx, yy, zz, xy, xz, yz |
-//! | 108..112 | zeros |
+//! | 0..24 | origin of the asset's frame in the coordinates of the mesh (f64) |
+//! | 24..36 | voxels along x, y, z (u32) |
+//! | 36..48 | lowest corner of the grid (f32, as all that follow) |
+//! | 48..52 | voxel size s |
+//! | 52..56 | σ, what a step of a value is worth |
+//! | 56..80 | lowest and highest corner of the box of the mesh |
+//! | 80..92 | error near the surface, error elsewhere, where near ends (see [`Accuracy`]) |
+//! | 92..132 | [`MassProperties`]: volume, centre, inertia xx, yy, zz, xy, xz, yz |
+//! | 132..136 | zeros |
 
 use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
@@ -56,7 +57,7 @@ use crate::{
 };
 
 /// Version of the `.vps` file this library reads and writes.
-pub const VPS_VERSION: u64 = 4;
+pub const VPS_VERSION: u64 = 5;
 
 const MAGIC: [u8; 8] = *b"VPSASSET";
 const ALIGN: usize = 64;
@@ -87,8 +88,9 @@ const CHECKED: usize = 24;
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Parameters {
+    origin: [f64; 3],
     dims: [u32; 3],
-    origin: [f32; 3],
+    grid_origin: [f32; 3],
     voxel_size: f32,
     sigma: f32,
     solid_min: [f32; 3],
@@ -129,6 +131,9 @@ pub enum FormatError {
     /// Values of a size that does not exist.
     #[error("in the voxelmap: values of {0} bytes")]
     ValueBytes(u16),
+    /// The frame of the asset lies nowhere.
+    #[error("the origin of the asset is not finite: {0:?}")]
+    Origin([f64; 3]),
     /// The grid is none.
     #[error("in the voxelmap: {0}")]
     Grid(#[from] GridError),
@@ -243,9 +248,13 @@ impl<'a> Asset<'a> {
             let cells = cast(bytes, cells, header.cells as usize)?.into();
             Store::sparse(p.dims, groups, cells, values)?
         };
+        if !p.origin.iter().all(|c| c.is_finite()) {
+            return Err(FormatError::Origin(p.origin));
+        }
         Ok(Self {
+            origin: p.origin,
             voxelmap: Voxelmap::new(
-                Grid::new(Vec3::from_array(p.origin), p.voxel_size, p.dims)?,
+                Grid::new(Vec3::from_array(p.grid_origin), p.voxel_size, p.dims)?,
                 p.sigma,
                 Aabb {
                     min: Vec3::from_array(p.solid_min),
@@ -297,8 +306,9 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
     };
     let accuracy = map.accuracy();
     let parameters = Parameters {
+        origin: asset.origin,
         dims: map.grid().dims(),
-        origin: map.grid().origin().to_array(),
+        grid_origin: map.grid().origin().to_array(),
         voxel_size: map.grid().voxel_size(),
         sigma: map.sigma(),
         solid_min: map.solid().min.to_array(),

@@ -49,7 +49,8 @@
 //!   [`DistanceField::signed_distance`] is its negative.
 //! * **Normals** of shells and gradients of fields point inwards, to deeper penetration.
 //! * **Frames**: `shell` is the frame of the pointshell, `field` that of the distance field. A
-//!   pose takes shell coordinates to field coordinates.
+//!   pose takes shell coordinates to field coordinates. Both are those of their assets: the
+//!   coordinates of the mesh less [`Asset::origin`], which is zero unless the mesh lies far away.
 //! * **Units** are SI: metres, newtons per metre of stiffness one, newton metres.
 //!
 //! # Features

@@ -56,6 +56,25 @@ impl Beyond {
         -(depth * depth + further).sqrt()
     }
 
+    /// The gradients of [`penetrations`](Self::penetrations), per metre, given those at the closest
+    /// points of the grid.
+    #[inline(always)]
+    pub(crate) fn gradients(&self, at_border: f32x4, inside: Vectors) -> Vectors {
+        let depth = at_border.fast_min(f32x4::ZERO);
+        let penetrations = self.penetrations(at_border);
+        let is_away = penetrations.simd_lt(f32x4::ZERO);
+        let shorter = is_away & (f32x4::ONE / penetrations);
+        let slope = |way: f32x4, gap: f32x4, inside: f32x4| {
+            let leaves = way.abs().simd_gt(f32x4::ZERO);
+            leaves.select(way + gap, depth * inside) * shorter
+        };
+        Vectors {
+            x: slope(self.way.x, self.gap.x, inside.x),
+            y: slope(self.way.y, self.gap.y, inside.y),
+            z: slope(self.way.z, self.gap.z, inside.z),
+        }
+    }
+
     /// Upper bounds of [`penetrations`](Self::penetrations) closer to the points than `radii`, where
     /// penetrations in the grid are no higher than `at_border` plus the way from the closest point;
     /// infinite where they may be positive in the grid, and the ball reaches it.

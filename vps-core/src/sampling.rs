@@ -403,26 +403,6 @@ struct Sampled {
     way: Vectors,
 }
 
-impl Sampled {
-    /// How the penetration grows with the place, per metre. Along an axis on which a point is beyond
-    /// the box only the way to the box counts.
-    #[inline(always)]
-    fn slope(&self) -> Vectors {
-        if !self.outside.simd_gt(f32x4::ZERO).any() {
-            return self.gradients;
-        }
-        let slope = |within: f32x4, off: f32x4| {
-            let is_within = off.simd_eq(f32x4::ZERO);
-            is_within.select(within, -off / self.outside)
-        };
-        Vectors {
-            x: slope(self.gradients.x, self.off.x),
-            y: slope(self.gradients.y, self.off.y),
-            z: slope(self.gradients.z, self.off.z),
-        }
-    }
-}
-
 impl DistanceField for Trilinear<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
@@ -481,8 +461,23 @@ impl DistanceField for Trilinear<'_> {
         _normals: &Points,
     ) -> ([f32; LANES], Points) {
         let sampled = self.sampled((*points).into());
-        let penetrations = sampled.values - sampled.outside;
-        (penetrations.to_array(), sampled.slope().into())
+        let is_outside = sampled.way.dot(sampled.way).simd_gt(f32x4::ZERO);
+        if !is_outside.any() {
+            return (sampled.values.to_array(), sampled.gradients.into());
+        }
+        let beyond = Beyond::new(sampled.inside, sampled.way, &self.0.solid());
+        let penetrations = beyond.penetrations(sampled.values);
+        let gradients = beyond.gradients(sampled.values, sampled.gradients);
+        let chosen = |beyond: f32x4, within: f32x4| is_outside.select(beyond, within);
+        let gradients = Vectors {
+            x: chosen(gradients.x, sampled.gradients.x),
+            y: chosen(gradients.y, sampled.gradients.y),
+            z: chosen(gradients.z, sampled.gradients.z),
+        };
+        (
+            chosen(penetrations, sampled.values).to_array(),
+            gradients.into(),
+        )
     }
 
     #[inline(always)]

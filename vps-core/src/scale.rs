@@ -33,6 +33,7 @@ impl Asset<'_> {
             return Err(ScaleError::Factor(factor));
         }
         Ok(Asset {
+            origin: self.origin.map(|c| c * f64::from(factor)),
             voxelmap: scaled_map(&self.voxelmap, factor)?,
             tree: scaled_tree(&self.tree, factor)?,
             mass: scaled_mass(&self.mass, factor),

@@ -261,7 +261,7 @@ fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -
     let kib = |bytes: usize| bytes.div_ceil(1024);
     format!(
         "{}: {triangles} triangles, {x} x {y} x {z} voxels of {:.6} m in {} KiB, {} points and {} \
-         levels in {} KiB, {seconds:.2} s\nsign: {}\n{}",
+         levels in {} KiB, {seconds:.2} s\nsign: {}\n{}{}",
         args.output.display(),
         map.grid().voxel_size(),
         kib(map.store().byte_len()),
@@ -270,6 +270,7 @@ fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -
         kib(tree.byte_len()),
         sign(args.sign, &built.repairs),
         thin_walls(&built.thin_walls, map.grid().voxel_size()),
+        frame(asset.origin),
     )
 }
 
@@ -292,6 +293,15 @@ fn thin_walls(walls: &ThinWalls, voxel_size: f32) -> String {
          m{lost}: --voxel-size {enough:.3e} or --voxels auto would do\n",
         percent(walls.share),
     )
+}
+
+/// Where the asset's frame lies, if it is not that of the mesh.
+fn frame(origin: [f64; 3]) -> String {
+    if origin == [0.0; 3] {
+        return String::new();
+    }
+    let [x, y, z] = origin;
+    format!("frame: its origin is at ({x}, {y}, {z}) m of the mesh, which is far from its own\n")
 }
 
 /// How the inside was found, in words.
@@ -367,6 +377,7 @@ fn for_machines(
         "file": args.output,
         "file_bytes": encode(asset).len(),
         "triangles": triangles,
+        "origin_m": asset.origin,
         "voxels": map.grid().dims(),
         "voxel_size_m": map.grid().voxel_size(),
         "sigma_m": map.sigma(),

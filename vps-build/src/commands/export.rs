@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use glamx::DVec3;
 use vps_build::{Mesh, read_asset, write_atomically};
 use vps_core::{PointSphereTree, Vec3, Voxelmap};
 
@@ -48,13 +49,17 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
             return Err("--level is for points and spheres".into());
         }
     }
+    let origin = DVec3::from_array(asset.origin);
     let drawing = match args.what {
         What::Points => points(&asset.tree, args.level),
         What::Spheres => spheres(&asset.tree, args.level.unwrap_or(levels))?,
         What::Voxels => voxels(&asset.voxelmap),
         What::Surface => surface(&asset.voxelmap),
     };
-    Ok(write_atomically(&args.output, drawing.ply().as_bytes())?)
+    Ok(write_atomically(
+        &args.output,
+        drawing.ply(origin).as_bytes(),
+    )?)
 }
 
 /// Coloured vertices, with faces or with normals.
@@ -66,11 +71,19 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// The text of an ASCII PLY file.
-    fn ply(&self) -> String {
+    /// The text of an ASCII PLY file in the coordinates of the mesh, in which the drawing's frame
+    /// has this origin.
+    fn ply(&self, origin: DVec3) -> String {
         let mut text = String::from("ply\nformat ascii 1.0\n");
         let _ = writeln!(text, "element vertex {}", self.vertices.len());
-        text += "property float x\nproperty float y\nproperty float z\n";
+        let kind = if origin == DVec3::ZERO {
+            "float"
+        } else {
+            "double"
+        };
+        for axis in ["x", "y", "z"] {
+            let _ = writeln!(text, "property {kind} {axis}");
+        }
         if !self.normals.is_empty() {
             text += "property float nx\nproperty float ny\nproperty float nz\n";
         }
@@ -78,7 +91,12 @@ impl Drawing {
         let _ = writeln!(text, "element face {}", self.faces.len());
         text += "property list uchar uint vertex_indices\nend_header\n";
         for (i, (p, [r, g, b])) in self.vertices.iter().enumerate() {
-            let _ = write!(text, "{} {} {} ", p.x, p.y, p.z);
+            if origin == DVec3::ZERO {
+                let _ = write!(text, "{} {} {} ", p.x, p.y, p.z);
+            } else {
+                let p = origin + p.as_dvec3();
+                let _ = write!(text, "{} {} {} ", p.x, p.y, p.z);
+            }
             if let Some(n) = self.normals.get(i) {
                 let _ = write!(text, "{} {} {} ", n.x, n.y, n.z);
             }
@@ -136,7 +154,7 @@ fn spheres(tree: &PointSphereTree<'_>, level: u32) -> Result<Drawing, Error> {
     for (n, cluster) in tree.level(level).iter().enumerate() {
         let first = drawing.vertices.len() as u32;
         let center = Vec3::from_array(cluster.center);
-        let on_ball = |v: &glamx::DVec3| (center + v.as_vec3() * cluster.radius, color(n as u32));
+        let on_ball = |v: &DVec3| (center + v.as_vec3() * cluster.radius, color(n as u32));
         drawing.vertices.extend(ball.vertices().iter().map(on_ball));
         let faces = ball
             .triangles()

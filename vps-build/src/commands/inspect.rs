@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use glamx::DVec3;
 use serde_json::json;
 use vps_build::{Health, read_asset, read_mesh};
-use vps_core::Asset;
+use vps_core::{Asset, Vec3};
 
 use super::Error;
 
@@ -112,6 +113,8 @@ fn mesh_rows(args: &InspectArgs) -> Result<Vec<Row>, Error> {
             json!(health.degenerate_faces),
             unless(health.degenerate_faces, "triangles without an area"),
         ),
+        ("low_m", json!(low.to_array()), "lowest corner of the box"),
+        ("high_m", json!(high.to_array()), "and highest"),
         ("extents_m", json!(health.extents_m), ""),
         ("area_m2", json!(health.area_m2), ""),
         ("volume_m3", json!(health.volume_m3), volume_remark),
@@ -122,11 +125,21 @@ fn mesh_rows(args: &InspectArgs) -> Result<Vec<Row>, Error> {
 
 fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
     let (map, tree, mass) = (&asset.voxelmap, &asset.tree, asset.mass);
+    let origin = DVec3::from_array(asset.origin);
+    // In the coordinates of the mesh.
+    let place = |local: Vec3| json!((origin + local.as_dvec3()).to_array());
     let accuracy = map.accuracy();
     let clusters: Vec<_> = (1..=tree.level_count())
         .map(|l| tree.level(l).len())
         .collect();
     vec![
+        (
+            "origin_m",
+            json!(asset.origin),
+            "of the asset's frame, in the coordinates of the mesh",
+        ),
+        ("low_m", place(map.solid().min), "lowest corner of the box"),
+        ("high_m", place(map.solid().max), "and highest"),
         ("voxels", json!(map.grid().dims()), ""),
         ("voxel_size_m", json!(map.grid().voxel_size()), ""),
         (
@@ -164,7 +177,7 @@ fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
             json!(mass.volume),
             "of the solid: its mass at density one",
         ),
-        ("center_of_mass_m", json!(mass.center_of_mass), ""),
+        ("center_of_mass_m", place(mass.center()), ""),
         (
             "inertia_kg_m2",
             json!(mass.inertia),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use glamx::DVec3;
 use serde::{Deserialize, Serialize};
 use vps_build::{read_asset, write_atomically};
 use vps_core::{DistanceField, Vec3};
@@ -13,7 +14,7 @@ use super::Error;
 pub(crate) struct SampleArgs {
     /// The asset
     file: PathBuf,
-    /// A CSV file with the columns x, y and z, in metres in the frame of the mesh
+    /// A CSV file with the columns x, y and z, in metres in the coordinates of the mesh
     #[arg(long, value_name = "IN.csv")]
     points: PathBuf,
     /// Where the result goes: `penetration_m` (negative outside) is within `error_bound_m` of the
@@ -25,16 +26,16 @@ pub(crate) struct SampleArgs {
 
 #[derive(Deserialize)]
 struct Point {
-    x: f32,
-    y: f32,
-    z: f32,
+    x: f64,
+    y: f64,
+    z: f64,
 }
 
 #[derive(Serialize)]
 struct Sampled {
-    x: f32,
-    y: f32,
-    z: f32,
+    x: f64,
+    y: f64,
+    z: f64,
     penetration_m: f32,
     gradient_x: f32,
     gradient_y: f32,
@@ -46,12 +47,13 @@ struct Sampled {
 pub(crate) fn run(args: &SampleArgs) -> Result<(), Error> {
     let asset = read_asset(&args.file)?;
     let field = asset.voxelmap.trilinear();
+    let origin = DVec3::from_array(asset.origin);
     let named = |e: &dyn std::fmt::Display| format!("{}: {e}", args.points.display());
     let mut reader = csv::Reader::from_path(&args.points).map_err(|e| named(&e))?;
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (number, row) in (1..).zip(reader.deserialize()) {
         let Point { x, y, z } = row.map_err(|e| named(&e))?;
-        let point = Vec3::new(x, y, z);
+        let point = (DVec3::new(x, y, z) - origin).as_vec3();
         if !point.is_finite() {
             return Err(named(&format!("row {number} is not finite")).into());
         }

@@ -1,123 +1,188 @@
-use std::io::BufReader;
-use std::path::Path;
+//! Wavefront OBJ: vertices and faces, a statement a line.
 
-use glamx::DVec3;
+use std::collections::BTreeSet;
 
 use super::Fault;
-use crate::{Mesh, MeshError};
+use super::polygons::Polygons;
+use super::text::{Lines, coordinates, integer, shown, text, without_comment, words};
+use crate::Mesh;
+
+/// Statements whose last word is a name, which may hold or end with anything.
+const NAMES: [&[u8]; 7] = [
+    b"o", b"g", b"usemtl", b"mtllib", b"usemap", b"maplib", b"matlib",
+];
 
 pub(super) fn parse(bytes: &[u8], object: Option<&str>) -> Result<Mesh, Fault> {
-    parse_objects(bytes, object).map_err(|error| {
-        let blamed = match error {
-            // The file is fine.
-            ObjError::NoObject(_) => None,
-            _ => first_bad_line(bytes),
+    let mut lines = Lines::new(text(bytes)?);
+    let mut polygons = Polygons::counted_from(1);
+    let mut objects = Objects::new(object);
+    let mut statement = Vec::new();
+    while next_statement(&mut lines, &mut statement) {
+        let Some((&(line, keyword), arguments)) = statement.split_first() else {
+            continue;
         };
-        match blamed {
-            Some((line, what)) => Fault::of_line(line, what),
-            None => Fault::of_file(error),
-        }
-    })
-}
-
-#[derive(Debug, thiserror::Error)]
-enum ObjError {
-    #[error("{0}")]
-    Obj(#[from] tobj::LoadError),
-    #[error("{0}")]
-    Mesh(#[from] MeshError),
-    #[error("there is no object `{0}`")]
-    NoObject(String),
-}
-
-fn parse_objects(bytes: &[u8], object: Option<&str>) -> Result<Mesh, ObjError> {
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..tobj::LoadOptions::default()
-    };
-    // Materials say nothing about shape.
-    let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
-    let (mut models, _) = tobj::load_obj_buf(&mut BufReader::new(bytes), &options, no_materials)?;
-    if let Some(name) = object {
-        models.retain(|model| model.name == name);
-        if models.is_empty() {
-            return Err(ObjError::NoObject(name.into()));
-        }
-    }
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for model in models {
-        let offset = vertices.len() as u32;
-        let coordinate = |c: &[f32]| DVec3::from_array([c[0], c[1], c[2]].map(f64::from));
-        vertices.extend(model.mesh.positions.chunks_exact(3).map(coordinate));
-        let corners = model.mesh.indices.chunks_exact(3);
-        triangles.extend(corners.map(|t| [t[0], t[1], t[2]].map(|v| v + offset)));
-    }
-    Ok(Mesh::new(&vertices, &triangles)?)
-}
-
-/// The first line with a vertex or a face that cannot be used, to tell the user where to look:
-/// the reader itself gives no lines.
-fn first_bad_line(text: &[u8]) -> Option<(usize, String)> {
-    let text = match std::str::from_utf8(text) {
-        Ok(text) => text,
-        Err(error) => {
-            let before = &text[..error.valid_up_to()];
-            let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-            return Some((line, "not text: is this an OBJ file?".into()));
-        }
-    };
-    let vertex_count = text
-        .lines()
-        .filter(|l| l.trim_start().starts_with("v "))
-        .count();
-    let mut seen = 0_i64;
-    for (i, line) in text.lines().enumerate() {
-        let mut words = line.split_whitespace();
-        let complaint = match words.next() {
-            Some("v") => {
-                seen += 1;
-                bad_vertex(words)
+        match keyword {
+            b"v" => {
+                let words = arguments.iter().map(|&(_, word)| word);
+                polygons.push_vertex(coordinates(line, words)?, line);
             }
-            Some("f") => bad_face(words, seen, vertex_count as i64),
-            _ => None,
+            b"f" | b"fo" if objects.is_chosen() => face(&mut polygons, line, arguments)?,
+            b"o" | b"g" => objects.begin(keyword, arguments),
+            b"surf" => {
+                let what = "a curved surface: only polygons can be read, export it as a mesh";
+                return Err(Fault::of_line(line, what));
+            }
+            b"call" => {
+                let what = "`call` of another file: put all into one file";
+                return Err(Fault::of_line(line, what));
+            }
+            // Normals, materials, curves and so on say nothing about the solid.
+            _ => {}
+        }
+    }
+    if polygons.face_count() == 0 {
+        objects.check()?;
+        if polygons.vertex_count() == 0 {
+            return Err(Fault::of_file(
+                "no triangles, nor any vertices: is this a Wavefront OBJ file?",
+            ));
+        }
+    }
+    polygons.mesh()
+}
+
+/// Takes the next statement apart: its words, each with its line. A statement goes on behind a line
+/// that ends with a backslash. The name of an object or a group is one word.
+fn next_statement<'t>(lines: &mut Lines<'t>, statement: &mut Vec<(usize, &'t [u8])>) -> bool {
+    statement.clear();
+    while let Some((number, line)) = lines.next() {
+        let data = without_comment(line).trim_ascii_end();
+        let keyword = words(data).next();
+        if statement.is_empty() && keyword.is_some_and(|k| NAMES.contains(&k)) {
+            let (start, line) = (keyword.unwrap_or_default(), line.trim_ascii());
+            statement.push((number, start));
+            statement.push((number, line[start.len()..].trim_ascii()));
+            return true;
+        }
+        let (data, goes_on) = match data {
+            [data @ .., b'\\'] => (data, true),
+            _ => (data, false),
         };
-        if let Some(what) = complaint {
-            return Some((i + 1, what));
+        statement.extend(words(data).map(|word| (number, word)));
+        if !goes_on {
+            return true;
         }
     }
-    None
+    !statement.is_empty()
 }
 
-fn bad_vertex<'t>(words: impl Iterator<Item = &'t str>) -> Option<String> {
-    let words: Vec<_> = words.take(3).collect();
-    if words.len() < 3 {
-        return Some("a vertex needs three coordinates".into());
-    }
-    words
-        .into_iter()
-        .find(|word| !word.parse::<f32>().is_ok_and(f32::is_finite))
-        .map(|word| format!("`{word}` is not a finite coordinate"))
-}
-
-fn bad_face<'t>(
-    words: impl Iterator<Item = &'t str>,
-    seen: i64,
-    vertex_count: i64,
-) -> Option<String> {
-    for word in words {
-        let index = word.split('/').next().unwrap_or_default();
-        match index.parse::<i64>() {
-            Err(_) => return Some(format!("`{word}` is not a vertex of a face")),
-            Ok(0) => return Some("a face refers to vertex 0: they are counted from 1".into()),
-            Ok(i) if i > vertex_count || -i > seen => {
-                return Some(format!(
-                    "a face refers to vertex {i}, but there are {vertex_count}"
-                ));
+/// Adds a face; each of its corners is a vertex, with numbers of other things behind slashes.
+fn face(polygons: &mut Polygons, line: usize, corners: &[(usize, &[u8])]) -> Result<(), Fault> {
+    for &(line, word) in corners {
+        let vertex = word.split(|&b| b == b'/').next().and_then(integer);
+        let fault = |what: String| Err(Fault::of_line(line, what));
+        let count = polygons.vertex_count() as i64;
+        let place = match vertex {
+            None => return fault(format!("`{}` is not a vertex of a face", shown(word))),
+            Some(0) => {
+                return fault("a face refers to vertex 0: they are counted from 1".into());
             }
-            Ok(_) => {}
+            Some(v) if v < 0 => v.checked_add(count).filter(|&v| v >= 0),
+            Some(v) => Some(v - 1),
+        };
+        let Some(place) = place.and_then(|place| u32::try_from(place).ok()) else {
+            return fault(format!(
+                "a face refers to vertex {}, but there are {count}",
+                shown(word)
+            ));
+        };
+        polygons.push_corner(place);
+    }
+    polygons.end_face(line);
+    Ok(())
+}
+
+/// The objects and groups of a file, and the one that is wanted.
+struct Objects<'a> {
+    wanted: Option<&'a str>,
+    in_object: bool,
+    in_group: bool,
+    /// Whether the wanted one has begun anywhere.
+    found: bool,
+    names: BTreeSet<String>,
+}
+
+impl<'a> Objects<'a> {
+    fn new(wanted: Option<&'a str>) -> Self {
+        Self {
+            wanted,
+            in_object: false,
+            in_group: false,
+            found: false,
+            names: BTreeSet::new(),
         }
     }
-    None
+
+    /// Whether a face here is of the wanted object.
+    fn is_chosen(&self) -> bool {
+        self.wanted.is_none() || self.in_object || self.in_group
+    }
+
+    /// An object (`o`) or a group (`g`, which may have several names) begins.
+    fn begin(&mut self, keyword: &[u8], arguments: &[(usize, &[u8])]) {
+        let Some(wanted) = self.wanted else { return };
+        let line = arguments.first().map_or(&[][..], |&(_, word)| word);
+        let whole = decoded(line);
+        let mut is_wanted = whole == wanted || decoded(uncommented_name(line)) == wanted;
+        if keyword == b"o" {
+            self.in_object = is_wanted;
+        } else {
+            is_wanted |= words(line).any(|name| decoded(name) == wanted);
+            self.in_group = is_wanted;
+        }
+        self.found |= is_wanted;
+        if !whole.is_empty() {
+            self.names.insert(whole);
+        }
+    }
+
+    /// # Errors
+    /// When the wanted object is not there.
+    fn check(&self) -> Result<(), Fault> {
+        const SHOWN: usize = 8;
+        let Some(wanted) = self.wanted.filter(|_| !self.found) else {
+            return Ok(());
+        };
+        let quoted = |name: &String| format!("`{}`", shown(name.as_bytes()));
+        let names: Vec<_> = self.names.iter().take(SHOWN).map(quoted).collect();
+        let more = if self.names.len() > SHOWN {
+            ", ..."
+        } else {
+            ""
+        };
+        let hint = if names.is_empty() {
+            ": the file names none".into()
+        } else {
+            format!(", but {}{more}", names.join(", "))
+        };
+        Err(Fault::of_file(format!(
+            "there is no object `{wanted}`{hint}"
+        )))
+    }
+}
+
+/// A name without a comment behind it. A `#` within a word is part of it.
+fn uncommented_name(line: &[u8]) -> &[u8] {
+    let comment = line
+        .windows(2)
+        .position(|w| w[0].is_ascii_whitespace() && w[1] == b'#');
+    line[..comment.unwrap_or(line.len())].trim_ascii()
+}
+
+/// UTF-8, or Latin-1 if it is not.
+fn decoded(name: &[u8]) -> String {
+    match str::from_utf8(name) {
+        Ok(name) => name.into(),
+        Err(_) => name.iter().map(|&b| char::from(b)).collect(),
+    }
 }

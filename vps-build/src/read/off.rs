@@ -1,45 +1,129 @@
-use std::error::Error as _;
+//! OFF: the counts, a line for each vertex, a line for each face.
 
-use glamx::DVec3;
-use off_rs::parser::options::{Limits, Options};
-
-use super::{Fault, polygon_mesh};
+use super::Fault;
+use super::polygons::Polygons;
+use super::text::{Lines, coordinates, integer, shown, text};
 use crate::Mesh;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let text = std::str::from_utf8(bytes).map_err(|_| Fault::of_file("not text"))?;
-    let options = Options {
-        limits: Limits::MAX,
-        ..Options::default()
-    };
-    let mesh = off_rs::parse(text, options).map_err(|error| match error {
-        off_rs::Error::ParserError(error) => {
-            let cause = error.source().map(|s| format!(": {s}")).unwrap_or_default();
-            Fault::of_line(error.line_index + 1, format!("{}{cause}", error.kind))
-        }
-        off_rs::Error::IOError(error) => Fault::of_file(error),
-    })?;
-    let vertices: Vec<_> = mesh
-        .vertices
-        .iter()
-        .map(|v| {
-            let p = v.position;
-            DVec3::from_array([p.x, p.y, p.z].map(f64::from))
-        })
-        .collect();
-    let index = |&v: &usize| {
-        let count = vertices.len();
-        let too_large = || {
+    let mut lines = Lines::new(text(bytes)?);
+    let [vertices, faces] = counts(&mut lines)?;
+    let mut polygons = Polygons::counted_from(0);
+    for i in 0..vertices {
+        let (line, words) = lines.next_words().ok_or_else(|| {
             Fault::of_file(format!(
-                "a face refers to vertex {v}, but there are {count}"
+                "the header speaks of {vertices} vertices, but there are {i}"
             ))
-        };
-        u32::try_from(v).map_err(|_| too_large())
+        })?;
+        polygons.push_vertex(coordinates(line, words)?, line);
+    }
+    for i in 0..faces {
+        let (line, mut words) = lines.next_words().ok_or_else(|| {
+            Fault::of_file(format!(
+                "the header speaks of {faces} faces, but there are {i}"
+            ))
+        })?;
+        let fault = |what: String| Fault::of_line(line, what);
+        let count = words.next().and_then(integer);
+        let count = count
+            .filter(|&n| n >= 0)
+            .ok_or_else(|| fault("a face must begin with the number of its corners".into()))?;
+        for corner in 0..count {
+            let word = words
+                .next()
+                .ok_or_else(|| fault(format!("a face of {count} corners names only {corner}")))?;
+            let vertex = integer(word).and_then(|v| u32::try_from(v).ok());
+            polygons.push_corner(vertex.ok_or_else(|| {
+                fault(format!("`{}` is not a vertex, counted from 0", shown(word)))
+            })?);
+        }
+        // What follows is the colour.
+        polygons.end_face(line);
+    }
+    polygons.mesh()
+}
+
+/// Takes the header: how many vertices and faces follow.
+fn counts(lines: &mut Lines<'_>) -> Result<[u64; 2], Fault> {
+    let Some((mut line, words)) = lines.next_words() else {
+        return Err(Fault::of_file(
+            "no counts of vertices and faces: the file is empty",
+        ));
     };
-    let polygons: Result<Vec<Vec<u32>>, _> = mesh
-        .faces
-        .iter()
-        .map(|face| face.vertices.iter().map(index).collect())
-        .collect();
-    polygon_mesh(&vertices, &polygons?)
+    let mut words: Vec<_> = words.collect();
+    let keyword = keyword(line, words[0])?;
+    // Counts may stand behind the keyword, even without a blank.
+    if keyword == words[0] {
+        words.remove(0);
+    } else {
+        words[0] = &words[0][keyword.len()..];
+    }
+    if words
+        .first()
+        .is_some_and(|w| w.eq_ignore_ascii_case(b"BINARY"))
+    {
+        return Err(Fault::of_line(
+            line,
+            "binary OFF cannot be read: save it as text",
+        ));
+    }
+    let mut next_line = |line: &mut usize| {
+        let (number, words) = lines
+            .next_words()
+            .ok_or_else(|| Fault::of_line(*line, "the file ends before its counts"))?;
+        *line = number;
+        Ok::<Vec<_>, Fault>(words.collect())
+    };
+    if keyword.contains(&b'n') {
+        if words.is_empty() {
+            words = next_line(&mut line)?;
+        }
+        let dimension = words.remove(0);
+        if dimension != b"3" {
+            let what = format!(
+                "vertices of {} coordinates: only 3 can be read",
+                shown(dimension)
+            );
+            return Err(Fault::of_line(line, what));
+        }
+    }
+    if words.is_empty() {
+        words = next_line(&mut line)?;
+    }
+    let count = |i: usize| {
+        words
+            .get(i)
+            .and_then(|w| integer(w))
+            .and_then(|n| u64::try_from(n).ok())
+    };
+    match [count(0), count(1)] {
+        [Some(vertices), Some(faces)] => Ok([vertices, faces]),
+        _ => Err(Fault::of_line(line, "no counts of vertices and faces")),
+    }
+}
+
+/// The part of the first word that says what a vertex holds; it may be missing.
+fn keyword(line: usize, word: &[u8]) -> Result<&[u8], Fault> {
+    if word[0].is_ascii_digit() && integer(word).is_some() {
+        return Ok(&[]);
+    }
+    let Some(end) = word
+        .windows(3)
+        .position(|w| w == b"OFF")
+        .map(|start| start + 3)
+    else {
+        let what = format!("`{}` instead of OFF: is this an OFF file?", shown(word));
+        return Err(Fault::of_line(line, what));
+    };
+    let (keyword, behind) = word.split_at(end);
+    let is_known = keyword[..end - 3].iter().all(|b| b"STCN4n".contains(b));
+    if !is_known || !behind.iter().all(u8::is_ascii_digit) {
+        let what = format!("`{}` is not a kind of OFF", shown(word));
+        return Err(Fault::of_line(line, what));
+    }
+    if keyword.contains(&b'4') {
+        let what = "4OFF, vertices of four coordinates: only three can be read";
+        return Err(Fault::of_line(line, what));
+    }
+    Ok(keyword)
 }

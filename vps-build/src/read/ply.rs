@@ -1,41 +1,396 @@
-use glamx::DVec3;
-use ply_rs_bw::parser::Parser;
-use ply_rs_bw::ply::{DefaultElement, Property};
+//! Stanford PLY: a header that describes itself, then the elements as text or binary.
 
-use super::{Fault, polygon_mesh};
+use super::Fault;
+use super::polygons::Polygons;
+use super::text::{Lines, number, shown, text, words};
 use crate::Mesh;
 
+/// What the list of a face's corners is called.
+const CORNERS: [&[u8]; 3] = [b"vertex_indices", b"vertex_index", b"vertex_indexes"];
+
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let parser = Parser::<DefaultElement>::new();
-    let ply = parser.read_ply(&mut &*bytes).map_err(|error| {
-        let what = error.to_string();
-        // The line has a place of its own.
-        let prefix = error.line().map(|line| format!("Line {line}: "));
-        let what = prefix.and_then(|p| what.strip_prefix(&p)).unwrap_or(&what);
-        Fault::new(error.line(), &what)
-    })?;
-    let elements = |name: &str| ply.payload.get(name).map(Vec::as_slice).unwrap_or_default();
-    let mut vertices = Vec::new();
-    for (i, vertex) in elements("vertex").iter().enumerate() {
-        let coordinate = |name: &str| match vertex.get(name) {
-            Some(Property::Double(c)) => Some(*c),
-            Some(other) => other.to_f32_lossy().map(f64::from),
-            None => None,
-        };
-        match [coordinate("x"), coordinate("y"), coordinate("z")] {
-            [Some(x), Some(y), Some(z)] => vertices.push(DVec3::new(x, y, z)),
-            _ => return Err(Fault::of_file(format!("vertex {i} has no x, y and z"))),
+    let (encoding, elements, lines) = header(text(bytes)?)?;
+    let mut body = match encoding {
+        Encoding::Text => Body::Text(lines),
+        Encoding::Binary { big_endian } => Body::Binary {
+            rest: lines.rest(),
+            big_endian,
+        },
+    };
+    let mut polygons = Polygons::counted_from(0);
+    let mut has_faces = false;
+    for element in &elements {
+        match element.name {
+            b"vertex" => vertices(&mut body, element, &mut polygons)?,
+            b"face" => {
+                has_faces = true;
+                faces(&mut body, element, &mut polygons)?;
+            }
+            b"tristrips" => {
+                has_faces = true;
+                strips(&mut body, element, &mut polygons)?;
+            }
+            _ => body.skip(element)?,
         }
     }
-    let mut polygons = Vec::new();
-    for (i, face) in elements("face").iter().enumerate() {
-        let list = face
-            .get("vertex_indices")
-            .or_else(|| face.get("vertex_index"));
-        let polygon = list.and_then(Property::to_u32_list);
-        polygons.push(polygon.ok_or_else(|| {
-            Fault::of_file(format!("face {i} has no list vertex_indices of vertices"))
-        })?);
+    if !has_faces {
+        return Err(Fault::of_file(
+            "no triangles: the file is a point cloud, make a mesh of it first",
+        ));
     }
-    polygon_mesh(&vertices, &polygons)
+    polygons.mesh()
+}
+
+enum Encoding {
+    Text,
+    Binary { big_endian: bool },
+}
+
+/// A kind of things the file holds, one after the other.
+struct Element<'t> {
+    name: &'t [u8],
+    count: u64,
+    properties: Vec<Property<'t>>,
+    /// Where the header tells of it.
+    line: usize,
+}
+
+struct Property<'t> {
+    name: &'t [u8],
+    kind: Scalar,
+    /// What counts its items, if it is a list.
+    list: Option<Scalar>,
+}
+
+#[derive(Clone, Copy)]
+enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn of(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// The number these bytes, as many as its size, stand for.
+    fn value(self, bytes: &[u8], big_endian: bool) -> f64 {
+        fn array<const N: usize>(bytes: &[u8], big_endian: bool) -> [u8; N] {
+            std::array::from_fn(|i| bytes[if big_endian { N - 1 - i } else { i }])
+        }
+        let big = big_endian;
+        match self {
+            Self::I8 => i8::from_le_bytes(array(bytes, big)).into(),
+            Self::U8 => bytes[0].into(),
+            Self::I16 => i16::from_le_bytes(array(bytes, big)).into(),
+            Self::U16 => u16::from_le_bytes(array(bytes, big)).into(),
+            Self::I32 => i32::from_le_bytes(array(bytes, big)).into(),
+            Self::U32 => u32::from_le_bytes(array(bytes, big)).into(),
+            Self::F32 => f32::from_le_bytes(array(bytes, big)).into(),
+            Self::F64 => f64::from_le_bytes(array(bytes, big)),
+        }
+    }
+}
+
+impl Element<'_> {
+    /// Which property has one of these names.
+    fn find(&self, names: &[&[u8]]) -> Option<usize> {
+        self.properties.iter().position(|p| names.contains(&p.name))
+    }
+}
+
+/// Reads the header; the lines that are left are the body.
+fn header(bytes: &[u8]) -> Result<(Encoding, Vec<Element<'_>>, Lines<'_>), Fault> {
+    let mut lines = Lines::new(bytes);
+    if lines
+        .next()
+        .is_none_or(|(_, line)| line.trim_ascii() != b"ply")
+    {
+        let what = "the first line is not `ply`: is this a PLY file?";
+        return Err(Fault::of_line(1, what));
+    }
+    let mut encoding = None;
+    let mut elements: Vec<Element<'_>> = Vec::new();
+    while let Some((line, content)) = lines.next() {
+        let fault = || {
+            let what = format!(
+                "`{}` is not a line of a PLY header",
+                shown(content.trim_ascii())
+            );
+            Fault::of_line(line, what)
+        };
+        let words: Vec<_> = words(content).collect();
+        match words.as_slice() {
+            [] | [b"comment" | b"obj_info", ..] => {}
+            [b"format", b"ascii", ..] => encoding = Some(Encoding::Text),
+            [
+                b"format",
+                order @ (b"binary_little_endian" | b"binary_big_endian"),
+                ..,
+            ] => {
+                let big_endian = *order == b"binary_big_endian";
+                encoding = Some(Encoding::Binary { big_endian });
+            }
+            [b"element", name, count] => elements.push(Element {
+                name,
+                count: str::from_utf8(count)
+                    .ok()
+                    .and_then(|c| c.parse().ok())
+                    .ok_or_else(fault)?,
+                properties: Vec::new(),
+                line,
+            }),
+            [b"property", described @ ..] => {
+                let kind = |word: &[u8]| Scalar::of(word).ok_or_else(fault);
+                let property = match described {
+                    [b"list", count, item, name] => Property {
+                        name,
+                        kind: kind(item)?,
+                        list: Some(kind(count)?),
+                    },
+                    [scalar, name] => Property {
+                        name,
+                        kind: kind(scalar)?,
+                        list: None,
+                    },
+                    _ => return Err(fault()),
+                };
+                elements
+                    .last_mut()
+                    .ok_or_else(fault)?
+                    .properties
+                    .push(property);
+            }
+            [b"end_header"] => {
+                let encoding = encoding
+                    .ok_or_else(|| Fault::of_line(line, "the header has no line `format`"))?;
+                return Ok((encoding, elements, lines));
+            }
+            _ => return Err(fault()),
+        }
+    }
+    Err(Fault::of_line(
+        lines.number(),
+        "the header has no line `end_header`",
+    ))
+}
+
+/// The elements behind the header.
+enum Body<'t> {
+    Text(Lines<'t>),
+    Binary { rest: &'t [u8], big_endian: bool },
+}
+
+impl Body<'_> {
+    /// Reads the n-th of some elements: `visit` is called with each number and the property it
+    /// belongs to. Returns its line, or 0.
+    fn read(
+        &mut self,
+        element: &Element<'_>,
+        n: u64,
+        mut visit: impl FnMut(usize, f64),
+    ) -> Result<usize, Fault> {
+        let cut_off = || {
+            let (count, name) = (element.count, shown(element.name));
+            Fault::of_file(format!(
+                "the header speaks of {count} elements `{name}`, but the file ends in number {n}"
+            ))
+        };
+        match self {
+            Self::Text(lines) => {
+                let (line, content) = lines
+                    .find(|(_, content)| !content.trim_ascii().is_empty())
+                    .ok_or_else(cut_off)?;
+                let mut words = words(content);
+                for (p, property) in element.properties.iter().enumerate() {
+                    let mut next = || {
+                        let name = || shown(property.name);
+                        let word = words.next().ok_or_else(|| {
+                            Fault::of_line(line, format!("no number for `{}`", name()))
+                        })?;
+                        number(word).ok_or_else(|| {
+                            let what =
+                                format!("`{}` is not a number for `{}`", shown(word), name());
+                            Fault::of_line(line, what)
+                        })
+                    };
+                    if property.list.is_some() {
+                        let count = next()?;
+                        let items = whole(count).ok_or_else(|| {
+                            Fault::of_line(line, format!("a list cannot have {count} items"))
+                        })?;
+                        for _ in 0..items {
+                            visit(p, next()?);
+                        }
+                    } else {
+                        visit(p, next()?);
+                    }
+                }
+                Ok(line)
+            }
+            Self::Binary { rest, big_endian } => {
+                let mut take = |scalar: Scalar| {
+                    let (bytes, behind) =
+                        rest.split_at_checked(scalar.size()).ok_or_else(cut_off)?;
+                    *rest = behind;
+                    Ok::<_, Fault>(scalar.value(bytes, *big_endian))
+                };
+                for (p, property) in element.properties.iter().enumerate() {
+                    if let Some(counter) = property.list {
+                        let count = take(counter)?;
+                        let items = whole(count).ok_or_else(|| {
+                            let name = shown(element.name);
+                            let what = format!("in `{name}` {n}, a list cannot have {count} items");
+                            Fault::of_file(what)
+                        })?;
+                        for _ in 0..items {
+                            visit(p, take(property.kind)?);
+                        }
+                    } else {
+                        visit(p, take(property.kind)?);
+                    }
+                }
+                Ok(0)
+            }
+        }
+    }
+
+    /// Passes over elements that say nothing about shape.
+    fn skip(&mut self, element: &Element<'_>) -> Result<(), Fault> {
+        // Without properties they take no place, however many there are.
+        let count = if element.properties.is_empty() {
+            0
+        } else {
+            element.count
+        };
+        for n in 0..count {
+            self.read(element, n, |_, _| ())?;
+        }
+        Ok(())
+    }
+}
+
+/// A number that counts something.
+fn whole(number: f64) -> Option<u32> {
+    let is_whole = number >= 0.0 && number < f64::from(u32::MAX) && number.fract() == 0.0;
+    is_whole.then_some(number as u32)
+}
+
+fn vertices(
+    body: &mut Body<'_>,
+    element: &Element<'_>,
+    polygons: &mut Polygons,
+) -> Result<(), Fault> {
+    let [Some(x), Some(y), Some(z)] = [b"x", b"y", b"z"].map(|name| element.find(&[name])) else {
+        let what = "a vertex needs the properties x, y and z";
+        return Err(Fault::of_line(element.line, what));
+    };
+    for n in 0..element.count {
+        let mut place = [0.0; 3];
+        let line = body.read(element, n, |property, value| {
+            for (coordinate, wanted) in place.iter_mut().zip([x, y, z]) {
+                if property == wanted {
+                    *coordinate = value;
+                }
+            }
+        })?;
+        polygons.push_vertex(place, line);
+    }
+    Ok(())
+}
+
+/// The list of corners of a face or a strip.
+fn corners(element: &Element<'_>) -> Result<usize, Fault> {
+    let list = element.find(&CORNERS);
+    let list = list.filter(|&p| element.properties[p].list.is_some());
+    list.ok_or_else(|| {
+        let what = format!("`{}` needs a list vertex_indices", shown(element.name));
+        Fault::of_line(element.line, what)
+    })
+}
+
+fn no_vertex(line: usize, element: &Element<'_>, n: u64, value: f64) -> Fault {
+    let name = shown(element.name);
+    let what = format!("{name} {n} (counted from 0) refers to vertex {value}");
+    Fault::at(line, what)
+}
+
+fn faces(body: &mut Body<'_>, element: &Element<'_>, polygons: &mut Polygons) -> Result<(), Fault> {
+    let list = corners(element)?;
+    for n in 0..element.count {
+        let mut bad = None;
+        let line = body.read(element, n, |property, value| {
+            if property == list {
+                match whole(value) {
+                    Some(vertex) => polygons.push_corner(vertex),
+                    None => bad = Some(value),
+                }
+            }
+        })?;
+        if let Some(value) = bad {
+            return Err(no_vertex(line, element, n, value));
+        }
+        polygons.end_face(line);
+    }
+    Ok(())
+}
+
+/// Each three vertices in a row are a triangle, every other one turned; -1 begins anew.
+fn strips(
+    body: &mut Body<'_>,
+    element: &Element<'_>,
+    polygons: &mut Polygons,
+) -> Result<(), Fault> {
+    let list = corners(element)?;
+    for n in 0..element.count {
+        let mut strip = Vec::new();
+        let line = body.read(element, n, |property, value| {
+            if property == list {
+                strip.push(value);
+            }
+        })?;
+        for strip in strip.split(|&vertex| vertex == -1.0) {
+            for (i, triangle) in strip.windows(3).enumerate() {
+                let turned = if i % 2 == 0 { [0, 1, 2] } else { [1, 0, 2] };
+                // A vertex twice in a row turns the strip, and is no triangle.
+                if triangle[0] == triangle[1]
+                    || triangle[1] == triangle[2]
+                    || triangle[0] == triangle[2]
+                {
+                    continue;
+                }
+                for value in turned.map(|i| triangle[i]) {
+                    let vertex = whole(value);
+                    polygons.push_corner(vertex.ok_or_else(|| no_vertex(line, element, n, value))?);
+                }
+                polygons.end_face(line);
+            }
+        }
+    }
+    Ok(())
 }

@@ -1,21 +1,147 @@
-use std::io::Cursor;
-
-use glamx::DVec3;
+//! STL: triangles, as text or as 50 bytes each. Normals are not used.
 
 use super::Fault;
+use super::polygons::Polygons;
+use super::text::{Lines, coordinates, shown, text, words};
 use crate::Mesh;
+use crate::mesh::misplacement;
+
+/// Bytes before the first triangle of a binary file: any header, then their number.
+const HEAD: usize = 84;
+
+/// Bytes of a triangle: a normal, three corners, and two more.
+const TRIANGLE: usize = 50;
+
+/// What some programs leave for the number of triangles when they do not know it at the start.
+const UNKNOWN: [u32; 2] = [0, u32::MAX];
 
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let mut vertices = Vec::new();
-    let mut cursor = Cursor::new(bytes);
-    let triangles = stl_io::create_stl_reader(&mut cursor).map_err(Fault::of_file)?;
-    for (i, triangle) in triangles.enumerate() {
-        let fault = |e| Fault::of_file(format!("triangle {i}: {e}"));
-        let corners = triangle.map_err(fault)?.vertices;
-        vertices.extend(corners.map(|v| DVec3::from_array(v.0.map(f64::from))));
+    // The header of a binary file may be any text, but text has no zero bytes, which the number of
+    // triangles does not do without.
+    let used = bytes
+        .iter()
+        .rposition(|&b| b != 0)
+        .map_or(0, |last| last + 1);
+    if bytes[..used].trim_ascii().is_empty() {
+        return Err(Fault::of_file("no triangles: the file is empty"));
     }
-    let triangles: Vec<_> = (0..vertices.len() as u32 / 3)
-        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-        .collect();
-    Ok(Mesh::new(&vertices, &triangles)?)
+    if bytes[..used].contains(&0) {
+        binary(bytes)
+    } else {
+        ascii(&bytes[..used])
+    }
+}
+
+fn binary(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let (Some(count), Some(data)) = (bytes.get(HEAD - 4..HEAD), bytes.get(HEAD..)) else {
+        return Err(Fault::of_file(format!(
+            "{} bytes are neither text nor the {HEAD} that a binary STL file begins with",
+            bytes.len()
+        )));
+    };
+    let told = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
+    let held = data.len() / TRIANGLE;
+    let is_whole = data.len().is_multiple_of(TRIANGLE);
+    let count = if is_whole && UNKNOWN.contains(&told) {
+        held
+    } else {
+        told as usize
+    };
+    if count > held || is_whole && count < held {
+        return Err(Fault::of_file(format!(
+            "the header speaks of {told} triangles, but the file holds {held}: export it again"
+        )));
+    }
+    let mut polygons = Polygons::counted_from(0);
+    for (i, triangle) in data.chunks_exact(TRIANGLE).take(count).enumerate() {
+        for corner in triangle[12..48].chunks_exact(12) {
+            let coordinate = |a: usize| {
+                let bytes = [0, 1, 2, 3].map(|i| corner[4 * a + i]);
+                f64::from(f32::from_le_bytes(bytes))
+            };
+            let place = [0, 1, 2].map(coordinate);
+            if let Some(fault) = misplacement(place.into()) {
+                let what = format!("a corner of triangle {i} (counted from 0) {fault}: {place:?}");
+                return Err(Fault::of_file(what));
+            }
+            polygons.push_corner(polygons.vertex_count() as u32);
+            polygons.push_vertex(place, 0);
+        }
+        polygons.end_face(0);
+    }
+    polygons.mesh()
+}
+
+/// `facet normal x y z outer loop vertex x y z ... endloop endfacet`, on as many lines as they
+/// like, within `solid name` and `endsolid name`.
+fn ascii(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let mut lines = Lines::new(text(bytes)?);
+    let mut polygons = Polygons::counted_from(0);
+    // Where the facet began that has not ended, and the corners it has.
+    let mut facet: Option<(usize, usize)> = None;
+    let mut is_solid = false;
+    while let Some((line, content)) = lines.next() {
+        let mut words = words(content);
+        while let Some(word) = words.next() {
+            let fault = |what: &str| Err(Fault::of_line(line, what));
+            match (word.to_ascii_lowercase().as_slice(), &mut facet) {
+                (b"solid", None) => {
+                    is_solid = true;
+                    break;
+                }
+                (b"endsolid", None) => {
+                    is_solid = false;
+                    break;
+                }
+                (b"facet", None) => {
+                    facet = Some((line, 0));
+                    // The normal is whatever stands before the loop.
+                    let mut ahead = words.clone();
+                    while ahead
+                        .next()
+                        .is_some_and(|w| !w.eq_ignore_ascii_case(b"outer"))
+                    {
+                        words = ahead.clone();
+                    }
+                }
+                (b"outer" | b"loop" | b"endloop", Some(_)) => {}
+                (b"vertex", Some((_, corners))) => {
+                    let place = coordinates(line, words.by_ref().take(3))?;
+                    polygons.push_corner(polygons.vertex_count() as u32);
+                    polygons.push_vertex(place, line);
+                    *corners += 1;
+                }
+                (b"endfacet", &mut Some((_, corners))) => {
+                    if corners < 3 {
+                        return fault("a facet has fewer than three vertices");
+                    }
+                    polygons.end_face(line);
+                    facet = None;
+                }
+                (b"solid" | b"endsolid" | b"facet", Some(_)) => {
+                    return fault("the facet before has no `endfacet`");
+                }
+                (b"vertex" | b"outer" | b"loop" | b"endloop" | b"endfacet", None) => {
+                    return fault("this belongs into a `facet`");
+                }
+                _ => {
+                    let what = format!(
+                        "`{}` is not a word of STL: is this an STL file?",
+                        shown(word)
+                    );
+                    return fault(&what);
+                }
+            }
+        }
+    }
+    if facet.is_some() || is_solid {
+        let missing = if facet.is_some() {
+            "endfacet"
+        } else {
+            "endsolid"
+        };
+        let what = format!("the file ends without `{missing}`: it was cut off");
+        return Err(Fault::of_line(lines.number(), what));
+    }
+    polygons.mesh()
 }

@@ -80,9 +80,7 @@ fn do_meet(mesh: &Mesh, a: u32, b: u32) -> bool {
         }
         (Some((i, j)), None) => {
             let (e, f) = (opposite(p, i), opposite(q, j));
-            pierces(e, q)
-                || pierces(f, p)
-                || f.iter().all(|&v| side(p, v) == 0.0) && overlap(p, q)
+            pierces(e, q) || pierces(f, p) || f.iter().all(|&v| side(p, v) == 0.0) && overlap(p, q)
         }
         // Signs of what is shared are known, and take the longest to tell from nothing.
         (Some((_, j)), Some((_, k))) => side(p, q[3 - j - k]) == 0.0 && overlap(p, q),

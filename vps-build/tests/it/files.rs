@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::support::asset;
+use glamx::DVec3;
 use proptest::prelude::*;
 use vps_build::{Encoding, Mesh, mass_properties, read_asset, read_mesh, write_asset};
 use vps_core::{Asset, DistanceField, FormatError, encode};
@@ -171,10 +172,14 @@ fn the_command_builds_and_complains_in_one_line() {
         );
     };
     fails("missing.obj", &[], "No such file");
-    fails("nan.obj", &[], "nan.obj:3: `nan`");
+    fails(
+        "nan.obj",
+        &[],
+        "nan.obj:3: vertex 3 at (0.0, NaN, 0.0) is not finite",
+    );
     fails("range.obj", &[], "range.obj:5: ");
     fails("empty.obj", &[], "no triangles");
-    fails("open.obj", &[], "encloses no volume");
+    fails("open.obj", &[], "sheet");
     fails("good.obj", &["--voxel-size", "1e-5"], "MiB");
     fails("good.obj", &["--voxel-size", "0"], "voxel size");
     fails("good.obj", &["--scale", "0"], "scale");
@@ -354,4 +359,142 @@ fn exports_are_meshes_again() {
     let (code, message) = export(&["--what", "points", "--level", "99"]);
     assert_eq!(code, Some(2));
     assert!(message.contains("levels 1 to"), "{message}");
+}
+
+/// Six quads around a box.
+fn obj_box(low: DVec3, high: DVec3) -> String {
+    let mut text = String::new();
+    for i in 0..8 {
+        let pick = |axis: usize| {
+            if i >> axis & 1 == 1 {
+                high[axis]
+            } else {
+                low[axis]
+            }
+        };
+        text += &format!("v {} {} {}\n", pick(0), pick(1), pick(2));
+    }
+    text + "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n"
+}
+
+/// A wall of 20 cm on maps in metres: nothing is lost to 32-bit coordinates, and what goes in and
+/// comes out is in those of the map.
+#[test]
+fn far_from_its_origin_a_mesh_is_built_as_well() {
+    let folder = Folder::new("far");
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    let extents = DVec3::new(3.0, 0.2, 2.0);
+    for at in [
+        DVec3::ZERO,
+        DVec3::new(5e5, 4e5, 100.0),
+        DVec3::new(-5e6, 5e6, 5e6),
+    ] {
+        std::fs::write(path("wall.obj"), obj_box(at, at + extents)).unwrap();
+        let options = ["--voxel-size", "0.05", "--points", "500", "--json"];
+        let mesh = path("wall.obj");
+        let built = output(&[&["build", &mesh, "-o", &path("wall.vps")], &options[..]].concat());
+        let built: serde_json::Value = serde_json::from_slice(&built.stdout).unwrap();
+        let three = |value: &serde_json::Value| {
+            DVec3::from_array([0, 1, 2].map(|i| value[i].as_f64().unwrap()))
+        };
+        let origin = three(&built["origin_m"]);
+        assert_eq!(origin == DVec3::ZERO, at == DVec3::ZERO);
+        let inspected = output(&["inspect", &path("wall.vps"), "--json"]).stdout;
+        let inspected: serde_json::Value = serde_json::from_slice(&inspected).unwrap();
+        assert_eq!(three(&inspected["origin_m"]), origin);
+        assert!((inspected["volume_m3"].as_f64().unwrap() - 1.2).abs() < 1e-4);
+        for (key, place) in [
+            ("center_of_mass_m", at + extents * 0.5),
+            ("low_m", at),
+            ("high_m", at + extents),
+        ] {
+            let found = three(&inspected[key]);
+            assert!(found.distance(place) < 1e-5, "{key}: {found}, not {place}");
+        }
+        // In the middle, beside it, and at a corner.
+        let points = [
+            extents * 0.5,
+            DVec3::new(1.5, -0.1, 1.0),
+            DVec3::new(0.0, 0.0, 0.0),
+        ];
+        let mut text = String::from("x,y,z\n");
+        for p in points {
+            let p = at + p;
+            text += &format!("{},{},{}\n", p.x, p.y, p.z);
+        }
+        std::fs::write(path("in.csv"), text).unwrap();
+        let (code, message) = vps_build(&[
+            "sample",
+            &path("wall.vps"),
+            "--points",
+            &path("in.csv"),
+            "-o",
+            &path("out.csv"),
+        ]);
+        assert_eq!((code, message.as_str()), (Some(0), ""));
+        let text = std::fs::read_to_string(path("out.csv")).unwrap();
+        for (line, expected) in text.lines().skip(1).zip([0.1, -0.1, 0.0]) {
+            let v: Vec<f64> = line.split(',').map(|c| c.parse().unwrap()).collect();
+            assert!((v[3] - expected).abs() <= v[7], "{line}: {expected}");
+        }
+        for what in ["surface", "voxels", "points", "spheres"] {
+            let ply = path("out.ply");
+            let export = vps_build(&["export", &path("wall.vps"), "--what", what, "-o", &ply]);
+            assert_eq!(export.0, Some(0));
+            if what != "points" {
+                let (low, high) = read_mesh(folder.0.join("out.ply").as_path(), None)
+                    .unwrap()
+                    .bounds();
+                let off = (low - at)
+                    .abs()
+                    .max((high - at - extents).abs())
+                    .max_element();
+                assert!(off < 1.0, "{what}: {low} {high}");
+            }
+        }
+    }
+}
+
+/// Small files whose numbers speak of much cost little, and each fault is one line.
+#[test]
+fn damaged_files_are_told_in_one_line_or_built() {
+    let folder = Folder::new("damaged");
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    let good = obj_box(DVec3::ZERO, DVec3::ONE);
+    let far = |vertex: &str| good.replacen("v 1 1 1\n", vertex, 1);
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 999999999\nproperty float x\n\
+               property float y\nproperty float z\nelement face 999999999\n\
+               property list uchar int vertex_indices\nend_header\n0123456789abcdef";
+    for (name, text, expected) in [
+        // Needles and faces much smaller than the box around all.
+        ("needles.obj", far("v 1 1 1e10\n"), None),
+        ("far.obj", far("v 1 1 999999999999\n"), Some("")),
+        ("further.obj", far("v 1 1 1e31\n"), Some("further.obj:8: ")),
+        ("tiny.obj", far("v 1 1 1e-320\n"), None),
+        ("count.ply", ply.into(), Some("999999999")),
+        (
+            "sheet.obj",
+            "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\nf 4 3 2 1\n".into(),
+            Some("sheet"),
+        ),
+        ("empty.stl", String::new(), Some("empty")),
+    ] {
+        std::fs::write(path(name), text).unwrap();
+        let out = path("out.vps");
+        let options = ["-o", &out, "-q", "--voxels", "20", "--points", "200"];
+        let mesh = path(name);
+        let (code, message) = vps_build(&[&["build", &mesh], &options[..]].concat());
+        match (code, expected) {
+            (Some(0), None) => assert_eq!(message, ""),
+            (Some(2), _) => {
+                assert_eq!(message.lines().count(), 1, "{name}: {message}");
+                let expected = expected.unwrap_or_default();
+                assert!(
+                    message.contains(name) && message.contains(expected),
+                    "{name}: {message}"
+                );
+            }
+            _ => panic!("{name}: {code:?} {message}"),
+        }
+    }
 }

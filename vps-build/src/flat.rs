@@ -1,0 +1,69 @@
+//! Sheets: meshes that lie in a plane.
+
+use glamx::DVec3;
+
+use crate::{BuildError, Mesh};
+
+/// How thick a sheet is at most, as a part of its longest side: what numbers of six digits may be
+/// off.
+const THICKNESS: f64 = 1e-5;
+
+/// # Errors
+/// When the mesh lies in a plane, whatever its orientation, and so bounds no solid.
+pub(crate) fn refuse_sheet(mesh: &Mesh) -> Result<(), BuildError> {
+    let normal = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        (b - a).cross(c - a)
+    };
+    let triangles = 0..mesh.triangles().len();
+    let largest = triangles.max_by(|&s, &t| normal(s).length().total_cmp(&normal(t).length()));
+    let largest = largest.unwrap_or(0);
+    let (across, [on, ..]) = (normal(largest).normalize_or_zero(), mesh.corners(largest));
+    let (low, high) = mesh.bounds();
+    let heights = mesh.vertices().iter().map(|&v| (v - on).dot(across));
+    let (lowest, highest) = heights.fold((0.0_f64, 0.0_f64), |(lowest, highest), height| {
+        (lowest.min(height), highest.max(height))
+    });
+    let longest_m = DVec3::max_element(high - low);
+    let thickness_m = highest - lowest;
+    if thickness_m <= THICKNESS * longest_m {
+        return Err(BuildError::Sheet {
+            thickness_m,
+            longest_m,
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::DQuat;
+
+    use super::*;
+
+    #[test]
+    fn sheets_of_any_orientation_are_refused_and_plates_are_not() {
+        let turns = [
+            DQuat::IDENTITY,
+            DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
+            DQuat::from_rotation_y(0.7) * DQuat::from_rotation_x(0.3),
+        ];
+        let is_sheet = |mesh: &Mesh| matches!(refuse_sheet(mesh), Err(BuildError::Sheet { .. }));
+        let sheet = Mesh::cuboid([2.0, 1.0, 0.0]).unwrap();
+        let plate = Mesh::cuboid([2.0, 1.0, 1e-4]).unwrap();
+        for turn in turns {
+            let turned = |mesh: &Mesh| {
+                let vertices: Vec<_> = mesh.vertices().iter().map(|&v| turn * v + 3.0).collect();
+                Mesh::new(&vertices, mesh.triangles()).unwrap()
+            };
+            assert!(is_sheet(&turned(&sheet)));
+            assert!(!is_sheet(&turned(&plate)));
+            let one_side = Mesh::new(turned(&sheet).vertices(), &sheet.triangles()[8..9]).unwrap();
+            assert!(is_sheet(&one_side));
+        }
+        // On a slanted line.
+        let line = [DVec3::ZERO, DVec3::ONE, DVec3::splat(2.0)];
+        let line = Mesh::new(&line, &[[0, 1, 2]]).unwrap();
+        assert!(is_sheet(&line));
+    }
+}

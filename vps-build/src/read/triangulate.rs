@@ -1,0 +1,412 @@
+//! Polygons in space cut into triangles.
+//!
+//! A polygon is seen along the axis its normal is closest to, which keeps the coordinates of the
+//! file as they are. If its first corner sees all others, as in any convex polygon, it is cut into
+//! a fan from there. Otherwise its triangles are those of the constrained Delaunay triangulation
+//! that lie inside. No vertex is added or left out, so neighbours of a polygon still meet it along
+//! all of its edges. An outline that crosses itself bounds no area of its own; it is cut into a fan.
+
+use glamx::{DVec2, DVec3};
+use robust::{Coord, orient2d};
+use rustc_hash::FxHashMap;
+use spade::handles::{DirectedEdgeHandle, FixedVertexHandle, VertexHandle};
+use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+
+/// Cuts polygons; keeps its memory from one to the next.
+#[derive(Default)]
+pub(super) struct Triangulator {
+    /// The corners, none twice in a row.
+    corners: Vec<u32>,
+    /// The corners in the plane, the polygon counter-clockwise around its area.
+    flat: Vec<DVec2>,
+}
+
+impl Triangulator {
+    /// Appends the triangles of the polygon with these corners among the vertices, which are
+    /// finite. They turn as the polygon does.
+    pub(super) fn triangulate(
+        &mut self,
+        vertices: &[DVec3],
+        corners: &[u32],
+        triangles: &mut Vec<[u32; 3]>,
+    ) {
+        if let &[a, b, c] = corners {
+            triangles.push([a, b, c]);
+            return;
+        }
+        let at = |v: u32| vertices[v as usize];
+        self.corners.clear();
+        self.corners.extend_from_slice(corners);
+        self.corners.dedup_by_key(|v| at(*v).to_array());
+        while self.corners.len() > 1
+            && at(self.corners[0]) == at(self.corners[self.corners.len() - 1])
+        {
+            self.corners.pop();
+        }
+        let corners = &self.corners;
+        if corners.len() < 3 {
+            return;
+        }
+        let normal = normal(vertices, corners);
+        let axis = normal.abs().max_position();
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (u, v) = if normal[axis] < 0.0 { (v, u) } else { (u, v) };
+        self.flat.clear();
+        let flat = |&c: &u32| DVec2::new(at(c)[u], at(c)[v]);
+        self.flat.extend(corners.iter().map(flat));
+        if !self.is_seen_from_first() && self.delaunay(vertices, triangles).is_some() {
+            return;
+        }
+        triangles.extend(corners[1..].windows(2).map(|e| [corners[0], e[0], e[1]]));
+    }
+
+    /// Whether all triangles of a fan from the first corner turn the same way as the polygon.
+    fn is_seen_from_first(&self) -> bool {
+        let mut edges = self.flat[1..].windows(2);
+        edges.all(|edge| orientation(self.flat[0], edge[0], edge[1]) > 0.0)
+    }
+
+    /// Appends the triangles of the constrained Delaunay triangulation inside of the polygon, or
+    /// none if its outline crosses itself.
+    fn delaunay(&self, vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Option<()> {
+        let mut place_at = FxHashMap::default();
+        let mut places: Vec<Place> = Vec::with_capacity(self.flat.len());
+        let mut outline = Vec::with_capacity(self.flat.len());
+        for (&flat, &corner) in self.flat.iter().zip(&self.corners) {
+            let place = *place_at.entry(key(flat)).or_insert(places.len());
+            if place == places.len() {
+                places.push(Place { flat, corner });
+            } else if vertices[places[place].corner as usize] != vertices[corner as usize] {
+                return None;
+            }
+            outline.push(place);
+        }
+        let mut seeded = places.clone();
+        seeded.extend(
+            seed(&places)
+                .into_iter()
+                .filter(|p| !place_at.contains_key(&key(p.flat))),
+        );
+        let mut cdt = ConstrainedDelaunayTriangulation::<Place>::bulk_load(seeded).ok()?;
+        let is_seed =
+            |vertex: &VertexHandle<'_, Place, (), CdtEdge<()>, ()>| vertex.data().corner == SEED;
+        while let Some(seed) = cdt.vertices().find(is_seed).map(|v| v.fix()) {
+            cdt.remove(seed);
+        }
+        let mut handles = vec![None; places.len()];
+        for vertex in cdt.vertices() {
+            handles[*place_at.get(&key(vertex.data().flat))?] = Some(vertex.fix());
+        }
+        // How often the outline passes from a vertex to another more than back. Where it goes both
+        // ways, to a hole and back, there is no border.
+        let mut borders: FxHashMap<[FixedVertexHandle; 2], i32> = FxHashMap::default();
+        let mut seams = Vec::new();
+        let next = outline.iter().cycle().skip(1);
+        for (&from, &to) in outline.iter().zip(next) {
+            let pieces = cdt.try_add_constraint(handles[from]?, handles[to]?);
+            if pieces.is_empty() {
+                return None;
+            }
+            for (i, &piece) in pieces.iter().enumerate() {
+                let ends = cdt.directed_edge(piece).vertices();
+                let [a, b] = ends.map(|v| v.fix());
+                *borders.entry([a, b]).or_default() += 1;
+                *borders.entry([b, a]).or_default() -= 1;
+                // An edge that passes other corners of the polygon stays one edge for its
+                // neighbour: triangles without an area lie between.
+                if i > 0 {
+                    let [a, b] = ends.map(|v| v.data().corner);
+                    seams.push([places[from].corner, b, a]);
+                }
+            }
+        }
+        // How often the outline goes around each face, from outside inwards.
+        let border = |edge: &DirectedEdgeHandle<'_, Place, (), CdtEdge<()>, ()>| {
+            let ends = edge.vertices().map(|v| v.fix());
+            borders.get(&ends).copied().unwrap_or(0)
+        };
+        let mut windings = vec![None; cdt.num_all_faces()];
+        let mut open = vec![cdt.outer_face().fix()];
+        windings[cdt.outer_face().index()] = Some(0);
+        for edge in cdt.convex_hull() {
+            let inner = edge.rev();
+            windings[inner.face().index()] = Some(border(&inner));
+            open.push(inner.face().fix());
+        }
+        while let Some(face) = open.pop() {
+            let Some(inner) = cdt.face(face).as_inner() else {
+                continue;
+            };
+            let winding = windings[face.index()]?;
+            for edge in inner.adjacent_edges() {
+                let other = edge.rev();
+                let around = winding + border(&other);
+                let known = &mut windings[other.face().index()];
+                if known.is_none() {
+                    *known = Some(around);
+                    open.push(other.face().fix());
+                }
+            }
+        }
+        if windings.iter().any(|w| !matches!(w, Some(0 | 1))) {
+            return None;
+        }
+        let inside = cdt
+            .inner_faces()
+            .filter(|face| windings[face.index()] == Some(1));
+        triangles.extend(inside.map(|face| face.vertices().map(|v| v.data().corner)));
+        triangles.extend(seams);
+        Some(())
+    }
+}
+
+/// A corner in the plane.
+#[derive(Clone, Copy)]
+struct Place {
+    flat: DVec2,
+    corner: u32,
+}
+
+impl HasPosition for Place {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        Point2::new(self.flat.x, self.flat.y)
+    }
+}
+
+/// The corner of a place that is no corner.
+const SEED: u32 = u32::MAX;
+
+/// Three places about the middle, to start a triangulation from: it takes long if the first of the
+/// corners, from the middle outwards, lie on a line.
+fn seed(places: &[Place]) -> [Place; 3] {
+    let sum: DVec2 = places.iter().map(|p| p.flat).sum();
+    let middle = sum / places.len() as f64;
+    let reach = places.iter().map(|p| (p.flat - middle).abs().max_element());
+    let step = 1e-3 * reach.fold(0.0, f64::max);
+    [DVec2::X, DVec2::Y, -DVec2::ONE].map(|to| Place {
+        flat: middle + to * step,
+        corner: SEED,
+    })
+}
+
+/// The same for the same place.
+fn key(flat: DVec2) -> [u64; 2] {
+    // Adding 0 makes -0 and 0 one.
+    (flat + 0.0).to_array().map(f64::to_bits)
+}
+
+fn orientation(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let [a, b, c] = [a, b, c].map(|p| Coord { x: p.x, y: p.y });
+    orient2d(a, b, c)
+}
+
+/// The mean normal of a polygon times twice its area (Newell).
+fn normal(vertices: &[DVec3], corners: &[u32]) -> DVec3 {
+    let at = |v: u32| vertices[v as usize] - vertices[corners[0] as usize];
+    let edges = corners.windows(2);
+    edges.map(|edge| at(edge[0]).cross(at(edge[1]))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::DQuat;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::edges::Edges;
+
+    fn cut(outline: &[DVec3]) -> Vec<[u32; 3]> {
+        let corners: Vec<_> = (0..outline.len() as u32).collect();
+        let mut triangles = Vec::new();
+        Triangulator::default().triangulate(outline, &corners, &mut triangles);
+        triangles
+    }
+
+    fn area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+        let double = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| vertices[v as usize]);
+            (b - a).cross(c - a).length()
+        };
+        0.5 * triangles.iter().map(double).sum::<f64>()
+    }
+
+    /// The triangles are bounded by the edges of the outline alone, and have its area between them.
+    fn check(outline: &[DVec3], expected: f64) {
+        let triangles = cut(outline);
+        let found = area(outline, &triangles);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        // Vertices at one place are one.
+        let first = |v: u32| {
+            outline
+                .iter()
+                .position(|p| *p == outline[v as usize])
+                .unwrap() as u32
+        };
+        let n = outline.len() as u32;
+        let mut all: Vec<_> = triangles.iter().map(|t| t.map(first)).collect();
+        // Closed from a point above, nothing is open.
+        all.extend((0..n).map(|i| [first((i + 1) % n), first(i), n]));
+        assert_eq!(Edges::of(&all).open_count(), 0);
+        // All turn as the outline does.
+        let normal = normal(outline, &(0..n).collect::<Vec<_>>());
+        for t in &triangles {
+            let [a, b, c] = t.map(|v| outline[v as usize]);
+            assert!((b - a).cross(c - a).dot(normal) >= -1e-12 * normal.length_squared());
+        }
+    }
+
+    fn flat(outline: &[[f64; 2]]) -> Vec<DVec3> {
+        outline
+            .iter()
+            .map(|&[x, y]| DVec3::new(x, y, 0.0))
+            .collect()
+    }
+
+    /// In its plane and in others, from every corner on, both ways round.
+    fn check_everywhere(outline: &[[f64; 2]], expected: f64) {
+        let turns = [
+            DQuat::IDENTITY,
+            DQuat::from_rotation_x(1.0),
+            DQuat::from_rotation_z(0.4) * DQuat::from_rotation_y(2.5),
+        ];
+        for turn in turns {
+            let mut outline: Vec<_> = flat(outline).into_iter().map(|p| turn * p).collect();
+            for _ in 0..outline.len() {
+                outline.rotate_left(1);
+                check(&outline, expected);
+                let reversed: Vec<_> = outline.iter().rev().copied().collect();
+                check(&reversed, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_channel_keeps_its_notch() {
+        let channel = [
+            [1, 3],
+            [0, 3],
+            [0, 0],
+            [4, 0],
+            [4, 3],
+            [3, 3],
+            [3, 1],
+            [1, 1],
+        ];
+        check_everywhere(&channel.map(|p| p.map(f64::from)), 8.0);
+    }
+
+    #[test]
+    fn corners_on_straight_edges_stay() {
+        let ell = [
+            [0, 0],
+            [1, 0],
+            [2, 0],
+            [3, 0],
+            [3, 1],
+            [1, 1],
+            [1, 2],
+            [1, 3],
+            [0, 3],
+            [0, 1],
+        ];
+        check_everywhere(&ell.map(|p| p.map(f64::from)), 5.0);
+    }
+
+    #[test]
+    fn a_hole_is_reached_by_an_edge_there_and_back() {
+        let keyhole = [
+            [0, 0],
+            [6, 0],
+            [6, 6],
+            [0, 6],
+            [0, 0],
+            [2, 2],
+            [2, 4],
+            [4, 4],
+            [4, 2],
+            [2, 2],
+        ];
+        check_everywhere(&keyhole.map(|p| p.map(f64::from)), 32.0);
+    }
+
+    #[test]
+    fn an_edge_through_a_corner_stays_one_edge() {
+        // The notch reaches the opposite side.
+        let touching = [[0, 0], [4, 0], [4, 2], [3, 2], [2, 0], [1, 2], [0, 2]];
+        check_everywhere(&touching.map(|p| p.map(f64::from)), 6.0);
+    }
+
+    #[test]
+    fn convex_and_self_crossing_polygons_are_fans() {
+        let square = flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        assert_eq!(cut(&square), [[0, 1, 2], [0, 2, 3]]);
+        let bow = flat(&[[0.0, 0.0], [2.0, 1.0], [2.0, 0.0], [0.0, 3.0]]);
+        assert_eq!(cut(&bow), [[0, 1, 2], [0, 2, 3]]);
+        let with_repeats = flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]]);
+        assert_eq!(cut(&with_repeats), [[0, 1, 3]]);
+        let point = flat(&[[1.0, 1.0]; 5]);
+        assert!(cut(&point).is_empty());
+    }
+
+    #[test]
+    fn a_bent_polygon_keeps_its_outline() {
+        let mut channel = flat(&[
+            [1.0, 3.0],
+            [0.0, 3.0],
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 3.0],
+            [3.0, 3.0],
+            [3.0, 1.0],
+            [1.0, 1.0],
+        ]);
+        for p in &mut channel {
+            p.z = 0.01 * (p.x * 1.7 + p.y * p.y).sin();
+        }
+        let triangles = cut(&channel);
+        assert_eq!(triangles.len(), 6);
+        assert!((area(&channel, &triangles) - 8.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_comb_of_many_teeth() {
+        let teeth = 2_000;
+        let mut comb = vec![[f64::from(teeth), -1.0], [0.0, -1.0]];
+        comb.reverse();
+        for i in (0..teeth).rev() {
+            let x = f64::from(i);
+            comb.extend([[x + 0.6, 0.0], [x + 0.5, 100.0], [x + 0.4, 0.0]]);
+        }
+        let outline = flat(&comb);
+        let triangles = cut(&outline);
+        assert_eq!(triangles.len(), comb.len() - 2);
+        let expected = 30.0 * f64::from(teeth) * 0.2 / 0.6;
+        let rest = area(&outline, &triangles) - expected;
+        assert!(rest > 0.0 && rest < 1.1 * f64::from(teeth), "{rest}");
+    }
+
+    proptest! {
+        /// A star around the origin with corners at any distance is simple, and has the area of the
+        /// triangles to its middle.
+        #[test]
+        fn stars_are_covered(
+            reach in prop::collection::vec(0.05..1.0_f64, 4..60),
+            axis in prop::array::uniform3(-1.0..1.0_f64),
+            turn in 0.0..6.0_f64,
+        ) {
+            let n = reach.len();
+            let axis = DVec3::from_array(axis).normalize_or(DVec3::X);
+            let turn = DQuat::from_axis_angle(axis, turn);
+            let corner = |(i, r): (usize, &f64)| {
+                let (sin, cos) = (i as f64 / n as f64 * std::f64::consts::TAU).sin_cos();
+                turn * DVec3::new(r * cos, r * sin, 0.0)
+            };
+            let outline: Vec<_> = reach.iter().enumerate().map(corner).collect();
+            let step = (std::f64::consts::TAU / n as f64).sin();
+            let expected: f64 = (0..n).map(|i| 0.5 * reach[i] * reach[(i + 1) % n] * step).sum();
+            check(&outline, expected);
+        }
+    }
+}
