@@ -19,7 +19,7 @@ pub enum Resolution {
     /// Voxels along the longest side of the mesh.
     VoxelsAlongLongest(u32),
     /// As [`VoxelsAlongLongest(100)`](Self::VoxelsAlongLongest), and finer where walls are thinner
-    /// than such a voxel, as far as the memory limit allows (see [`ThinWalls`]).
+    /// than such a voxel, as far as a quarter of the memory limit allows (see [`ThinWalls`]).
     #[default]
     Auto,
 }
@@ -321,7 +321,7 @@ pub fn build(
     let areas = samples.areas.iter().map(|&area| f64::from(area));
     let points: Vec<_> = samples.positions.iter().copied().zip(areas).collect();
     let voxel_size = f64::from(grid.voxel_size());
-    let thin_walls = ThinWalls::of(&solid.mesh, &bvh, &points, voxel_size, Some(&voxelmap));
+    let thin_walls = ThinWalls::of(&solid.mesh, &bvh, &points, 0.0..voxel_size, Some(&voxelmap));
     Ok(Built {
         asset: Asset {
             origin: origin.to_array(),
@@ -334,11 +334,14 @@ pub fn build(
     })
 }
 
+/// What part of the memory limit is for voxels nobody asked for.
+const AUTO_MEMORY: u64 = 4;
+
 /// How many points thin walls are looked for at before there is a pointshell, about.
 const WALL_SAMPLES: f64 = 10_000.0;
 
-/// The grid for the thin walls of a solid, if there are some: as fine as they need, or as memory
-/// allows.
+/// The grid for the thin walls of a solid, if there are some: as fine as they need, as far as a part
+/// of the memory limit allows.
 fn finer_grid(
     mesh: &Mesh,
     solid: &Mesh,
@@ -347,25 +350,25 @@ fn finer_grid(
     options: &BuildOptions,
     points: f64,
 ) -> Result<Option<Grid>, BuildError> {
-    let samples = sample::spread(solid, (solid.area() / WALL_SAMPLES).sqrt());
-    let places: Vec<_> = samples.points.into_iter().map(|p| (p, 1.0)).collect();
     let coarsest = f64::from(coarse.voxel_size());
-    let walls = ThinWalls::of(solid, bvh, &places, coarsest, None);
-    let Some(mut size) = walls.sufficient_voxel_m else {
-        return Ok(None);
-    };
-    while size < coarsest {
+    let of_size = |size: f64| {
         let options = BuildOptions {
             resolution: Resolution::VoxelSize(size),
+            memory_limit: options.memory_limit / AUTO_MEMORY,
             ..options.clone()
         };
-        match self::grid(mesh, &options, points) {
-            Ok(grid) => return Ok(Some(grid)),
-            Err(BuildError::Memory { .. }) => size *= 1.1,
-            Err(error) => return Err(error),
-        }
+        self::grid(mesh, &options, points)
+    };
+    let mut finest = coarsest;
+    while of_size(0.9 * finest).is_ok() {
+        finest *= 0.9;
     }
-    Ok(None)
+    let samples = sample::spread(solid, (solid.area() / WALL_SAMPLES).sqrt());
+    let places: Vec<_> = samples.points.into_iter().map(|p| (p, 1.0)).collect();
+    // Walls that the finest voxels would be too large for are no reason for finer ones.
+    let walls = ThinWalls::of(solid, bvh, &places, finest..coarsest, None);
+    let sufficient = walls.sufficient_voxel_m.map(|size| size.max(finest));
+    sufficient.map(of_size).transpose()
 }
 
 /// How many points there may be.

@@ -1,5 +1,7 @@
 //! Walls that voxels are too large for.
 
+use std::ops::Range;
+
 use glamx::DVec3;
 use rayon::prelude::*;
 use vps_core::{DistanceField, Voxelmap};
@@ -26,18 +28,18 @@ const NEGLECTED: f64 = 0.05;
 const PARALLEL: f64 = 0.9;
 
 impl ThinWalls {
-    /// At points of a surface, each standing for an area; walls count as thin below `voxel_size`
-    /// metres.
+    /// At points of a surface, each standing for an area; walls count whose thickness in metres is in
+    /// a range.
     pub(crate) fn of(
         mesh: &Mesh,
         bvh: &Bvh,
         points: &[(DVec3, f64)],
-        voxel_size: f64,
+        thin: Range<f64>,
         map: Option<&Voxelmap<'_>>,
     ) -> Self {
         let walls: Vec<Option<Wall>> = points
             .par_iter()
-            .map(|&(point, _)| wall(mesh, bvh, point, voxel_size))
+            .map(|&(point, _)| wall(mesh, bvh, point, &thin))
             .collect();
         let walls = || points.iter().zip(&walls);
         let thin = walls().filter_map(|(&(_, area), wall)| Some((wall.as_ref()?, area)));
@@ -71,23 +73,23 @@ struct Wall {
     middle: DVec3,
 }
 
-/// The wall behind a point of a surface, if it is thinner than `limit` metres: found along the
+/// The wall behind a point of a surface, if its thickness is in a range: found along the
 /// normal, by steps as long as nothing is in the way.
-fn wall(mesh: &Mesh, bvh: &Bvh, point: DVec3, limit: f64) -> Option<Wall> {
+fn wall(mesh: &Mesh, bvh: &Bvh, point: DVec3, thin: &Range<f64>) -> Option<Wall> {
     let normal = |t: u32| {
         let [a, b, c] = mesh.corners(t as usize);
         (b - a).cross(c - a).normalize_or_zero()
     };
     let front = bvh.closest(point, 0);
     let outward = normal(front.triangle);
-    let least = 1e-4 * limit;
+    let least = 1e-4 * thin.end;
     let (mut way, mut guess) = (least, front.triangle);
-    while way < limit {
+    while way < thin.end {
         let at = front.point - outward * way;
         let closest = bvh.closest(at, guess);
         guess = closest.triangle;
         if closest.distance <= least && normal(closest.triangle).dot(outward) < -PARALLEL {
-            return Some(Wall {
+            return (way >= thin.start).then(|| Wall {
                 thickness: way,
                 middle: front.point - outward * (0.5 * way),
             });
@@ -109,7 +111,7 @@ mod tests {
         };
         let count = mesh.triangles().len();
         let points: Vec<_> = (0..count).map(|t| (middle(t), area(t))).collect();
-        ThinWalls::of(mesh, &Bvh::new(mesh), &points, voxel_size, None)
+        ThinWalls::of(mesh, &Bvh::new(mesh), &points, 0.0..voxel_size, None)
     }
 
     #[test]

@@ -15,7 +15,7 @@ use crate::triangle::distance;
 pub(super) struct SelfContact {
     /// Triangles cross, or lie on each other.
     pub(super) meets: bool,
-    /// Triangles face each other across a gap.
+    /// Triangles face each other, or away from each other, a hair apart.
     pub(super) has_gaps: bool,
 }
 
@@ -24,7 +24,7 @@ const OPPOSITE: f64 = -0.9;
 
 impl SelfContact {
     /// Looks at all pairs of triangles; those that only share corners or edges, or touch in a point
-    /// or along a line, do not meet. Gaps are wider than nothing and at most `gap` metres wide.
+    /// or along a line, do not meet. Gaps, or what is thinner than them, are at most `gap` metres wide.
     ///
     /// Exact but for the width of gaps.
     pub(super) fn of(mesh: &Mesh, gap: f64) -> Self {
@@ -63,8 +63,9 @@ fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
     if n.dot(m) > OPPOSITE {
         return false;
     }
-    let (distance, between) = distance(p, q);
-    distance > 0.0 && distance <= gap && between.dot(n) > 0.0
+    // Parts may as well be a hair into each other.
+    let distance = distance(p, q);
+    distance > 0.0 && distance <= gap
 }
 
 /// Whether two triangles cross, or lie on each other over some area.
