@@ -41,6 +41,12 @@ pub enum ShapeError {
     /// The mesh cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// The mesh lies so far from its origin that 32-bit coordinates would lose it.
+    #[error(
+        "the mesh lies around ({0}, {1}, {2}) m, too far from its origin for 32-bit coordinates: move \
+         it to its origin, and its collider to where it was"
+    )]
+    Far(f64, f64, f64),
     /// A file of an asset cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -105,7 +111,8 @@ impl VpsShapeBuilder {
     /// Builds the shape, on all cores; seconds for a fine mesh.
     ///
     /// # Errors
-    /// When the mesh cannot be built with these options, or the cache not be written.
+    /// When the mesh cannot be built with these options, lies far from its origin, or the cache cannot
+    /// be written.
     pub fn build(self) -> Result<VpsShape, ShapeError> {
         let shape = match &self.cache {
             Some(cache) => {
@@ -114,7 +121,10 @@ impl VpsShapeBuilder {
             }
             None => VpsShape::new(Arc::new(build(&self.mesh, &self.options, &|_| ())?.asset)),
         };
-        Ok(shape.with_role(self.role))
+        match shape.asset().origin {
+            [0.0, 0.0, 0.0] => Ok(shape.with_role(self.role)),
+            [x, y, z] => Err(ShapeError::Far(x, y, z)),
+        }
     }
 
     /// Builds the shape in a thread of its own.
@@ -145,7 +155,9 @@ impl ShapeInBackground {
 }
 
 impl VpsShape {
-    /// The shape of a `.vps` file, as the command `vps-build build` makes them.
+    /// The shape of a `.vps` file, as the command `vps-build build` makes them, in the asset's own
+    /// frame: [`Asset::origin`](vps_core::Asset::origin) says where that lies in the coordinates of
+    /// the mesh.
     ///
     /// # Errors
     /// When it cannot be read or is not a sound asset.

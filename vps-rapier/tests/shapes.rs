@@ -82,6 +82,19 @@ fn what_is_no_mesh_is_an_error() {
 }
 
 #[test]
+fn a_mesh_far_from_its_origin_is_refused() {
+    let (vertices, triangles) = Cuboid::new(Vector::new(0.3, 0.2, 0.1)).to_trimesh();
+    let built = |at: Real| {
+        let moved: Vec<_> = vertices.iter().map(|v| *v + Vector::X * at).collect();
+        let builder = VpsShapeBuilder::from_triangles(&moved, &triangles).unwrap();
+        builder.options(options()).build()
+    };
+    assert!(built(10.0).is_ok());
+    let error = built(1e5).err().unwrap();
+    assert!(matches!(error, ShapeError::Far(..)), "{error}");
+}
+
+#[test]
 fn a_scaled_shape_is_larger_all_over() {
     let mesh = Mesh::cuboid([0.6, 0.4, 0.5]).unwrap();
     let shape = VpsShapeBuilder::new(mesh)

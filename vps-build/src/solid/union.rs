@@ -245,6 +245,8 @@ mod tests {
             (cuboid([0.5, 0.25, 0.25], [1.5, 0.75, 0.75]), 1.125, 7.0),
             (cuboid([0.25; 3], [0.75; 3]), 1.0, 6.0),
             (cuboid([1.00001, 0.0, 0.0], [2.0, 1.0, 1.0]), 2.0, 10.0),
+            (cuboid([1.0 + 1e-9, 0.0, 0.0], [2.0, 1.0, 1.0]), 2.0, 10.0),
+            (cuboid([1.0 - 1e-9, 0.0, 0.0], [2.0, 1.0, 1.0]), 2.0, 10.0),
         ];
         for (i, (other, expected_volume, expected_area)) in cases.into_iter().enumerate() {
             for turn in [false, true] {
