@@ -60,7 +60,7 @@ fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
     }
     let [p, q] = [a, b].map(|t| mesh.corners(t as usize));
     let [n, m] = [p, q].map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero());
-    if n.dot(m) > OPPOSITE {
+    if n.dot(m) > OPPOSITE || !overlap(p, q) {
         return false;
     }
     // Parts may as well be a hair into each other.
@@ -118,7 +118,7 @@ fn pierces([from, to]: [DVec3; 2], t: [DVec3; 3]) -> bool {
     zeros <= 1 && (around.iter().all(|s| *s >= 0.0) || around.iter().all(|s| *s <= 0.0))
 }
 
-/// Whether two triangles in one plane share some area.
+/// Whether two triangles share some area, seen along the axis that the first faces the most.
 fn overlap(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
     let [a, b, c] = p;
     let normal = (b - a).cross(c - a).abs();
