@@ -21,6 +21,9 @@ const STEP: f32 = 2.0;
 /// Most points of an edge; edges longer than all their steps are longer than any voxelmap.
 const MOST_POINTS: u32 = 1 << 12;
 
+/// How many spacings of the shell's points a triangle must be wide for some of them to meet it.
+const NARROW: f32 = 2.0;
+
 /// How many points of a circle there are.
 const CIRCLE: [u32; 2] = [8, 64];
 
@@ -37,6 +40,8 @@ pub(crate) struct Probe<'s> {
     /// The cosine of half the angle between the normals at an edge of a surface that is just sharp
     /// enough: between two points of the shell it stands out by what the voxelmap may be off.
     bluntest: f32,
+    /// How wide triangles must be in metres for the points of the shell to meet them all.
+    narrowest: f32,
     /// Whether the shape of parry is the first of the two.
     is_first: bool,
 }
@@ -59,6 +64,7 @@ impl<'s> Probe<'s> {
             vps,
             field,
             bluntest: 1.0 / (1.0 + steepest * steepest).sqrt(),
+            narrowest: NARROW * vps.spacing(),
             solid: map.solid(),
             far_error: map.accuracy().far_m,
             step: STEP * map.grid().voxel_size(),
@@ -200,6 +206,7 @@ impl<'s> Probe<'s> {
             around,
             step: self.step,
             bluntest: self.bluntest,
+            narrowest: self.narrowest,
         };
         edges.of_shape(self.shape, 0, 0.0, visit);
     }
@@ -211,8 +218,9 @@ struct Edges {
     pose: Pose3,
     around: Aabb,
     step: f32,
-    /// That of [`Probe`].
+    /// Those of [`Probe`].
     bluntest: f32,
+    narrowest: f32,
 }
 
 /// What the number of an element of a shape is multiplied with: points of its edges follow.
@@ -319,7 +327,7 @@ impl Edges {
         for facet in facets.unwrap_or_default() {
             for (number, seam) in (0_u8..).zip(&facet.edges) {
                 let i = usize::from(number);
-                if facet.is_shared[i] || !seam.stands_out(self.bluntest) {
+                if facet.is_shared[i] || !seam.stands_out(self.bluntest, self.narrowest) {
                     continue;
                 }
                 let ends = [facet.corners[i], facet.corners[(i + 1) % 3]];

@@ -7,7 +7,8 @@ use vps_core::{Aabb, Vec3};
 
 use crate::real::{core_vector, vector};
 
-/// How two triangles meet at an edge, or how many meet at a corner, seen from the side they face.
+/// How two triangles meet at an edge, or how many meet at a corner, seen from the side they face; of a
+/// corner the width is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Seam {
     /// The mean of the normals of the triangles that meet, of length one; zero if they cancel.
@@ -18,6 +19,8 @@ pub(crate) struct Seam {
     pub(crate) is_border: bool,
     /// Whether some of it bends towards the side it faces.
     pub(crate) is_hollow: bool,
+    /// How wide the narrowest of the triangles is that meet, in metres.
+    pub(crate) width: f32,
 }
 
 /// Up to here a seam is as good as none: single precision cannot tell normals apart that are closer.
@@ -29,10 +32,13 @@ impl Seam {
         !self.is_border && self.opening > FLAT
     }
 
-    /// Whether an edge is a ridge with at most a cosine between its normal and those of its triangles,
-    /// or a border.
-    pub(crate) fn stands_out(&self, bluntest: f32) -> bool {
-        self.is_border || !self.is_hollow && self.opening < bluntest.min(FLAT)
+    /// Whether an edge is a ridge or a border that points of a shell may miss: one with at most a cosine
+    /// between its normal and those of its triangles, or any where one of those is narrower than a
+    /// width, so that the points may miss it altogether.
+    pub(crate) fn stands_out(&self, bluntest: f32, narrowest: f32) -> bool {
+        let is_ridge = !self.is_hollow && self.opening < FLAT;
+        let is_missed = self.opening < bluntest || self.width < narrowest;
+        self.is_border || is_ridge && is_missed
     }
 }
 
@@ -148,6 +154,13 @@ impl Facet {
         }
     }
 
+    /// The smallest of its heights.
+    fn width(&self) -> f32 {
+        let [a, b, c] = self.corners;
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        (b - a).cross(c - a).length() / longest
+    }
+
     /// The angle at a corner.
     fn angle(&self, corner: usize) -> f32 {
         let at = |i: usize| self.corners[i % 3] - self.corners[corner];
@@ -172,6 +185,8 @@ fn join(facets: &mut [Facet], places: &[[Place; 3]]) {
         let normals = group.iter().map(|&(_, _, f, _)| (facets[f].normal, 1.0));
         let mut seam = seam(normals);
         seam.is_border = group.len() == 1;
+        let widths = group.iter().map(|&(_, _, f, _)| facets[f].width());
+        seam.width = widths.fold(f32::INFINITY, f32::min);
         seam.is_hollow = group.iter().any(|&(_, _, f, e)| {
             let facet = &facets[f];
             group.iter().any(|&(_, _, other, of_other)| {
