@@ -59,6 +59,10 @@ pub struct VpsDispatcher {
 }
 
 /// What is to be done about two shapes.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one at a time, on the stack for one query"
+)]
 enum Task<'s> {
     Pair(Pair<'s>),
     /// Part by part of the first shape.

@@ -18,6 +18,8 @@ pub(crate) fn asset(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
 }
 
 /// All bits of the state of all bodies.
+// Numbers of rapier are 32-bit or 64-bit.
+#[allow(clippy::useless_conversion)]
 #[allow(dead_code)] // Not by every test.
 pub(crate) fn state(world: &PhysicsWorld) -> Vec<u64> {
     let mut bits = Vec::new();
