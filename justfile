@@ -50,8 +50,8 @@ test-with seed:
     cargo test --locked --release -p vps-bench
     # Worlds in double precision, on several threads with wide vectors and in files, and the same on
     # every machine.
-    cargo test --locked -p vps-rapier --no-default-features --features f64,build --tests
-    cargo test --locked -p vps-rapier --features serde,rapier3d/parallel,rapier3d/simd8 --test shapes --test switches
+    cargo test --locked -p vps-rapier --no-default-features --features f64,serde,debug-render --tests
+    cargo test --locked -p vps-rapier --features serde,debug-render,rapier3d/parallel,rapier3d/simd8 --test shapes --test switches --test snapshots --test looks
     cargo test --locked -p vps-rapier --features rapier3d/enhanced-determinism --test switches
 
 # The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
@@ -94,6 +94,6 @@ check:
     cargo fmt --all --check
     cargo clippy --locked --workspace --all-targets -- -D warnings
     cargo clippy --locked -p vps-core --no-default-features --features libm -- -D warnings
-    cargo clippy --locked -p vps-rapier --all-targets --no-default-features --features f64,serde -- -D warnings
+    cargo clippy --locked -p vps-rapier --all-targets --no-default-features --features f64,serde,debug-render -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
-    RUSTDOCFLAGS="-D warnings" cargo doc --locked -p vps-rapier --features serde --no-deps
+    RUSTDOCFLAGS="-D warnings" cargo doc --locked -p vps-rapier --features serde,debug-render --no-deps

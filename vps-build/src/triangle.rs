@@ -21,7 +21,8 @@ pub fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
         return c;
     }
     let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+    // Of an edge without length the other two are one.
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
         return a + ab * (d1 / (d1 - d3));
     }
     let va = d3 * d6 - d5 * d4;
@@ -108,6 +109,17 @@ mod tests {
             }
             let least = points(p).map(|a| closest_point(q, a).distance(a)).fold(f64::MAX, f64::min);
             prop_assert!(distance <= least + 1e-12 && distance >= 0.5 * least - 1.0);
+        }
+
+        /// Whichever two corners are one, the closest point is that of the edge that is left.
+        #[test]
+        fn triangles_may_be_edges(a in vector(), b in vector(), p in vector()) {
+            let along = ((p - a).dot(b - a) / a.distance_squared(b)).clamp(0.0, 1.0);
+            let expected = p.distance(a + (b - a) * along);
+            for t in [[a, a, b], [a, b, b], [b, a, b], [b, b, a], [b, a, a], [a, b, a]] {
+                prop_assert!((p.distance(closest_point(t, p)) - expected).abs() < 1e-9);
+            }
+            prop_assert_eq!(closest_point([a; 3], p), a);
         }
 
         /// No sampled point of the triangle is closer, and the point lies in the triangle.

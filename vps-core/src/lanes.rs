@@ -355,6 +355,26 @@ impl Discs {
         }
     }
 
+    /// How far a piece reaches from its centre in a direction of length one, in metres, at most: for
+    /// fields that look at one piece after the other.
+    #[inline]
+    pub fn reach(&self, lane: usize, direction: Vec3) -> f32 {
+        let radius = self.radii[lane];
+        let across = direction.dot(self.normals.get(lane));
+        let along = (1.0 - across * across).max(0.0).sqrt();
+        let bend = across * self.bulges[lane];
+        // As in `rise`.
+        let r = if bend < 0.0 {
+            radius.min(along / (bend * -2.0))
+        } else {
+            radius
+        };
+        let on_dish = across * self.lifts[lane]
+            + across.abs() * self.thickness[lane]
+            + r * (along + bend * r);
+        on_dish.min(radius)
+    }
+
     /// The pieces grown to hold what is up to `by` metres away from a point of theirs.
     #[inline(always)]
     pub(crate) fn grown(&self, by: f32) -> Self {

@@ -97,6 +97,8 @@ mod segments;
 mod shapes;
 mod storage;
 pub mod store;
+#[cfg(feature = "alloc")]
+mod surface_mesh;
 mod sweep;
 mod time_critical;
 mod tree;
@@ -126,6 +128,8 @@ pub use scale::ScaleError;
 pub use shapes::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
 pub use storage::Storage;
 pub use store::{Store, Values};
+#[cfg(feature = "alloc")]
+pub use surface_mesh::SurfaceMesh;
 pub use sweep::{Impact, Sweep};
 pub use time_critical::Estimate;
 pub use tree::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};

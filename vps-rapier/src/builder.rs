@@ -50,6 +50,9 @@ pub enum ShapeError {
     /// A file of an asset cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// What was saved with a world is not a sound asset.
+    #[error("an asset saved with a world: {0}")]
+    Asset(#[from] vps_core::FormatError),
 }
 
 impl From<CacheError> for ShapeError {

@@ -18,17 +18,27 @@ const HALVINGS: usize = 24;
 /// What approaches at less than this share of the speed passes by.
 const GRAZING: f32 = 1e-3;
 
-/// How alike the normals of contacts are, as a cosine, that are of one surface.
-const ALIKE: f32 = 0.9;
+/// How a rigid body moves at a moment.
+pub(crate) struct Twist {
+    /// The velocity at the origin, in metres a second.
+    linear: Vec3,
+    /// In radians a second.
+    angular: Vec3,
+}
+
+impl Twist {
+    fn at(&self, point: Vec3) -> Vec3 {
+        self.linear + self.angular.cross(point)
+    }
+}
 
 /// How two shapes move.
 pub(crate) trait Motion {
     /// The pose of the second shape in the frame of the first.
     fn pose12(&self, time: Real) -> Pose;
 
-    /// How fast the second shape moves relative to the first, at a point; both in the frame of the
-    /// first.
-    fn velocity12(&self, time: Real, point1: Vector) -> Vector;
+    /// How the second shape moves relative to the first, in the frame of the first.
+    fn twist12(&self, time: Real) -> Twist;
 
     /// No two points of the shapes come closer to each other faster than this.
     fn closing_speed(&self) -> Real;
@@ -45,8 +55,11 @@ impl Motion for Linear {
         self.start.append_translation(self.velocity * time)
     }
 
-    fn velocity12(&self, _time: Real, _point1: Vector) -> Vector {
-        self.velocity
+    fn twist12(&self, _time: Real) -> Twist {
+        Twist {
+            linear: core_vector(self.velocity),
+            angular: Vec3::ZERO,
+        }
     }
 
     fn closing_speed(&self) -> Real {
@@ -66,14 +79,18 @@ impl Motion for Turning<'_> {
         pos1.inv_mul(&pos2)
     }
 
-    fn velocity12(&self, time: Real, point1: Vector) -> Vector {
+    fn twist12(&self, time: Real) -> Twist {
         let pos1 = self.motions[0].position_at_time(time);
-        let point = pos1 * point1;
         let [velocity1, velocity2] = self.motions.map(|m| {
             let center = m.position_at_time(time) * m.local_center;
-            m.linvel + m.angvel.cross(point - center)
+            m.linvel + m.angvel.cross(pos1.translation - center)
         });
-        pos1.rotation.inverse() * (velocity2 - velocity1)
+        let spin = self.motions[1].angvel - self.motions[0].angvel;
+        let to_first = pos1.rotation.inverse();
+        Twist {
+            linear: core_vector(to_first * (velocity2 - velocity1)),
+            angular: core_vector(to_first * spin),
+        }
     }
 
     fn closing_speed(&self) -> Real {
@@ -87,7 +104,9 @@ impl Motion for Turning<'_> {
 /// time are not looked at closer than that.
 ///
 /// A shape that is close to another, as a body that slides on its ground is, has no way to go by that
-/// measure: it goes half a voxel at a time, and back to when it met something if it did.
+/// measure: it goes half a voxel, or a quarter of the thickness of the thinner of the two, at a time,
+/// and back to when it met something if it did. On level ground it goes as far as that is known to
+/// be.
 ///
 /// Unless it stops at penetration, what is within the target distance already is only met if it comes
 /// closer.
@@ -119,7 +138,10 @@ struct Cast<'c, 's, M> {
 impl<M: Motion> Cast<'_, '_, M> {
     fn run(&self, start_time: Real, end_time: Real) -> Option<ShapeCastHit> {
         let (near, error) = (real(4.0 * self.pair.resolution()), real(self.pair.error()));
-        let stride = (0.125 * near).max(0.5 * self.target).max(self.tolerance);
+        let thickness = real(self.pair.thickness());
+        let stride = ((0.125 * near).max(0.25 * thickness))
+            .max(0.5 * self.target)
+            .max(self.tolerance);
         let speed = self.motion.closing_speed();
         let (mut time, mut before) = (start_time, start_time);
         for _ in 0..CAST_STEPS {
@@ -143,7 +165,8 @@ impl<M: Motion> Cast<'_, '_, M> {
             if free > stride {
                 time += (free - error).max(0.5 * free.min(near)) / speed;
             } else if time < end_time {
-                time = (time + stride / speed).min(end_time);
+                let level = real(self.pair.level_reach(&self.pose12(time)));
+                time = (time + stride.max(level) / speed).min(end_time);
             } else {
                 return None;
             }
@@ -176,28 +199,22 @@ impl<M: Motion> Cast<'_, '_, M> {
 
     /// The same where the deepest contact is known.
     fn met_by(&self, time: Real, deepest: PairContact) -> Option<PairContact> {
-        if self.meets_all || self.closes(time, &deepest, deepest.normals[0]) {
+        let twist = self.motion.twist12(time);
+        let slowest = -GRAZING * core_real(self.motion.closing_speed());
+        // Whether the shapes come closer to each other at a point, along a normal out of the first.
+        let closes = |point: Vec3, normal: Vec3| twist.at(point).dot(normal) < slowest;
+        if self.meets_all || closes(deepest.points[0], deepest.normals[0]) {
             return Some(deepest);
         }
-        let is_other = |contact: &PairContact| {
-            let by_shell = contact.by_shell.unwrap_or(contact.normals[0]);
-            contact.normals[0].dot(deepest.normals[0]) < ALIKE
-                && self.closes(time, contact, contact.normals[0])
-                && self.closes(time, contact, by_shell)
-        };
+        let is_met = |contact: &PairContact| closes(contact.points[0], contact.normals[0]);
+        let beside = deepest.normals[0];
         let within = core_real(self.target + self.tolerance);
-        self.pair.deepest_of(&self.pose12(time), within, &is_other)
+        self.pair
+            .deepest_of(&self.pose12(time), within, beside, &closes, &is_met)
     }
 
     fn free(&self, contact: &PairContact) -> Real {
         real(-contact.penetration) - self.target
-    }
-
-    /// Whether the shapes come closer to each other at a contact, along a normal out of the first.
-    fn closes(&self, time: Real, contact: &PairContact, normal: Vec3) -> bool {
-        let velocity = self.motion.velocity12(time, vector(contact.points[0]));
-        let speed = core_real(self.motion.closing_speed());
-        core_vector(velocity).dot(normal) < -GRAZING * speed
     }
 
     /// The time something was met first, between one when nothing was and one when `contact` was.

@@ -3,13 +3,11 @@
 
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::bounding_volume::BoundingVolume;
-use rapier3d::parry::query::{
-    ContactManifold, ContactManifoldsWorkspace, PersistentQueryDispatcher,
-};
+use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{Compound, Shape};
 
 use crate::VpsShape;
-use crate::workspace::Workspace;
+use crate::manifolds::remember;
 
 /// The compound a shape is, if a VPS shape is among its parts.
 pub(crate) fn compound_of_vps(shape: &dyn Shape) -> Option<&Compound> {
@@ -49,16 +47,13 @@ impl Part<'_> {
 }
 
 /// Updates the manifolds of all pairs of parts that are close to each other.
-pub(crate) fn update_parts<M, C>(
+pub(crate) fn update_parts<M: Clone, C: Copy>(
     dispatcher: &dyn PersistentQueryDispatcher<M, C>,
     pos12: &Pose,
     [g1, g2]: [&dyn Shape; 2],
     prediction: Real,
     manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
 ) {
-    let mut ours = Workspace::take(workspace);
-    let mut old_spaces = std::mem::take(&mut ours.parts);
     let mut old = std::mem::take(manifolds);
     let seconds = parts(g2);
     for part1 in parts(g1) {
@@ -75,8 +70,10 @@ pub(crate) fn update_parts<M, C>(
             };
             let (mut theirs, others) = old.into_iter().partition(is_theirs);
             old = others;
-            let found = old_spaces.iter_mut().find(|(of, _)| *of == key);
-            let mut space = found.and_then(|(_, space)| space.take());
+            let before = theirs.clone();
+            // What parry keeps beside the manifolds of meshes cannot be kept here: rapier has room for
+            // the pair of compounds alone, and for nothing but parry's own in a file.
+            let mut workspace = None;
             // All pairs of shapes that are no VPS shapes have been asked of parry.
             let asked = dispatcher.contact_manifolds(
                 &pos,
@@ -84,10 +81,13 @@ pub(crate) fn update_parts<M, C>(
                 part2.shape,
                 prediction,
                 &mut theirs,
-                &mut space,
+                &mut workspace,
             );
             if asked.is_err() {
                 theirs.clear();
+            }
+            if workspace.is_some() {
+                remember(&mut theirs, &before);
             }
             for mut manifold in theirs {
                 if let Some((number, pose)) = part1.place {
@@ -100,8 +100,6 @@ pub(crate) fn update_parts<M, C>(
                 }
                 manifolds.push(manifold);
             }
-            ours.parts.push((key, space));
         }
     }
-    ours.put(workspace);
 }

@@ -15,12 +15,13 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::{Compound, Shape};
 
 use crate::cast::{Linear, Turning, cast};
+use crate::check::connected;
 use crate::compound::{compound_of_vps, update_parts};
 use crate::contact::PairContact;
-use crate::manifolds::{normals, update_manifolds};
+use crate::manifolds::update_manifolds;
 use crate::pair::Pair;
 use crate::real::{core_pose, core_real, real, vector};
-use crate::workspace::Workspace;
+use crate::workspace::mark;
 
 /// How a voxelmap is sampled between the centres of its voxels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +59,10 @@ pub struct VpsDispatcher {
 }
 
 /// What is to be done about two shapes.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one at a time, on the stack for one query"
+)]
 enum Task<'s> {
     Pair(Pair<'s>),
     /// Part by part of the first shape.
@@ -68,6 +73,7 @@ enum Task<'s> {
 
 impl VpsDispatcher {
     fn task<'s>(&self, g1: &'s dyn Shape, g2: &'s dyn Shape) -> Result<Task<'s>, Unsupported> {
+        connected();
         if let Some(compound) = compound_of_vps(g1) {
             return Ok(Task::PartsOfFirst(compound));
         }
@@ -254,20 +260,15 @@ where
     ) -> Result<(), Unsupported> {
         match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let prediction = core_real(prediction);
-                let pose = core_pose(pos12);
-                let mut ours = Workspace::take(workspace);
-                let before = ours.pos12.replace(pose);
-                let normals = manifolds.first().map(normals);
-                let motion = pair.motion(&pose, before.as_ref(), normals);
-                update_manifolds(&pair, &pose, prediction, motion, self.manifolds, manifolds);
-                ours.put(workspace);
+                let (pose, prediction) = (core_pose(pos12), core_real(prediction));
+                update_manifolds(&pair, &pose, prediction, self.manifolds, manifolds);
             }
             Task::PartsOfFirst(_) | Task::PartsOfSecond(_) => {
                 let all = self.chain(DefaultQueryDispatcher);
-                update_parts(&all, pos12, [g1, g2], prediction, manifolds, workspace);
+                update_parts(&all, pos12, [g1, g2], prediction, manifolds);
             }
         }
+        mark(workspace);
         Ok(())
     }
 

@@ -24,8 +24,8 @@
 //!
 //! # What collides
 //! A VPS shape collides with VPS shapes and with every shape of parry, in compounds too: as a shell
-//! in the exact field of a ball, a cuboid or a half-space, or in the [`ShapeField`] of another, whose
-//! documentation says what it makes of surfaces without an interior; and as the field of points on
+//! in the exact field of a ball, a cuboid or a half-space, or in the [`ShapeField`] of what is near of
+//! another, whose documentation says what it makes of surfaces without an interior; and as the field of points on
 //! the edges of the other, so that what is smaller than the spacing of the shell's points does not
 //! slip between them.
 
@@ -52,17 +52,22 @@ struct Readme;
 #[cfg(feature = "build")]
 mod builder;
 mod cast;
+mod check;
 mod compound;
 mod contact;
+#[cfg(feature = "debug-render")]
+mod debug_render;
 mod dispatcher;
 mod manifolds;
 mod pair;
 mod probe;
 mod real;
-#[cfg(feature = "serde")]
-mod saved;
 mod shape;
 mod shape_field;
+#[cfg(feature = "serde")]
+mod snapshot;
+mod surface;
+mod surface_field;
 mod surroundings;
 mod thickness;
 mod way;
@@ -73,13 +78,17 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 
 #[cfg(feature = "build")]
 pub use builder::{ShapeError, ShapeInBackground, VpsShapeBuilder};
+pub use check::{NoDispatcher, check};
+#[cfg(feature = "debug-render")]
+pub use debug_render::debug_render;
 pub use dispatcher::{Manifolds, Sampling, VpsDispatcher};
-#[cfg(feature = "serde")]
-pub use saved::{SaveError, SavedShapes};
 pub use shape::{Role, VpsShape};
 pub use shape_field::ShapeField;
+#[cfg(feature = "serde")]
+pub use snapshot::{SavedShapes, Snapshot};
 
-/// A narrow phase with the default [`VpsDispatcher`] before parry's own.
+/// A narrow phase with the default [`VpsDispatcher`] before parry's own. Without it VPS shapes meet
+/// nothing, see [`check`].
 pub fn narrow_phase() -> NarrowPhase {
     NarrowPhase::with_query_dispatcher(VpsDispatcher::default().chain(DefaultQueryDispatcher))
 }

@@ -8,6 +8,7 @@ use crate::contact::{
     turn_all,
 };
 use crate::probe::Probe;
+use crate::real::core_real;
 use crate::way::{SPREAD_SIZE, Way};
 use crate::{Manifolds, Role, Sampling, VpsShape};
 
@@ -21,6 +22,8 @@ pub(crate) struct Pair<'s> {
     always_back: bool,
     /// The points of a shape of parry in the voxelmap of the other.
     probe: Option<Probe<'s>>,
+    /// That of the thinner of the two, in metres; 0 of what has none that is known.
+    thickness: f32,
 }
 
 /// How many spacings of the points a shape must be thick to be met by points alone.
@@ -29,6 +32,9 @@ const THICK: f32 = 2.0;
 /// From which part of the size of a shell on it is so deep that the closest surface may be the wrong
 /// way out.
 const DEEP: f32 = 0.02;
+
+/// How alike the normals of contacts are, as a cosine, that are of one surface.
+const ALIKE: f32 = 0.9;
 
 /// By how much of the size of a shell contacts may be less deep than the best there are, and stay.
 const STILL: f32 = 1e-4;
@@ -44,25 +50,28 @@ impl<'s> Pair<'s> {
                 back: None,
                 always_back: false,
                 probe: Some(Probe::new(g2, a, false)),
+                thickness: thinner(a, g2),
             }),
             (None, Some(b)) => Some(Self {
                 first_way: Way::in_shape(b, g1, false),
                 back: None,
                 always_back: false,
                 probe: Some(Probe::new(g1, b, true)),
+                thickness: thinner(b, g1),
             }),
             (Some(a), Some(b)) => Some(Self::of_vps_shapes(a, b, sampling)),
         }
     }
 
     fn of_vps_shapes(a: &'s VpsShape, b: &'s VpsShape, sampling: Sampling) -> Self {
-        let points = |s: &VpsShape| s.asset().tree.point_count();
+        // A body that is small beside the other would be met by few points of that, if any.
+        let density = |s: &VpsShape| (s.spacing(), s.asset().tree.point_count());
         let first_is_shell = match (a.role(), b.role()) {
             (Role::Pointshell, b) if b != Role::Pointshell => true,
             (a, Role::Pointshell) if a != Role::Pointshell => false,
             (Role::Voxelmap, b) if b != Role::Voxelmap => false,
             (a, Role::Voxelmap) if a != Role::Voxelmap => true,
-            _ => points(a) <= points(b),
+            _ => density(a) <= density(b),
         };
         let (shell, field) = if first_is_shell { (a, b) } else { (b, a) };
         let is_free = |s: &VpsShape| s.role() == Role::Mixed;
@@ -74,6 +83,7 @@ impl<'s> Pair<'s> {
             back: Some(Way::in_map(field, shell, sampling, !first_is_shell)),
             always_back: both,
             probe: None,
+            thickness: a.thickness().min(b.thickness()),
         }
     }
 
@@ -127,37 +137,30 @@ impl<'s> Pair<'s> {
         closest.into_iter().chain(probed).reduce(deeper)
     }
 
-    /// The deepest of all contacts up to `margin` metres away of which something is true. Looks at
-    /// them all.
+    /// The deepest of all contacts up to `margin` metres away of which something is true, and whose
+    /// normal out of the first shape is another one than `beside`. Looks at them all, at those of
+    /// shells only if `is_worth` says so of the point and the shell's normal,
+    /// both in the frame of the first shape and the normal out of it.
     pub(crate) fn deepest_of(
         &self,
         pos12: &Pose3,
         margin: f32,
+        beside: Vec3,
+        is_worth: &dyn Fn(Vec3, Vec3) -> bool,
         is_wanted: &dyn Fn(&PairContact) -> bool,
     ) -> Option<PairContact> {
+        let is_unlike = |normal: Vec3| normal.dot(beside) < ALIKE;
+        let is_wanted = |contact: &PairContact| is_unlike(contact.normals[0]) && is_wanted(contact);
         let mut probed = Vec::new();
         if let Some(probe) = &self.probe {
             probe.contacts(pos12, margin, &mut probed);
         }
         let by_shells = self
             .ways(pos12)
-            .filter_map(|way| way.deepest_of(pos12, margin, is_wanted));
+            .filter(|way| way.level_normal(pos12, margin).is_none_or(is_unlike))
+            .filter_map(|way| way.deepest_of(pos12, margin, is_worth, &is_wanted));
         let deepest = by_shells.chain(probed.into_iter().filter(is_wanted));
         deepest.reduce(deeper)
-    }
-
-    /// How far the shapes moved towards each other or apart since the step before, in metres, if
-    /// those were the normals of their contacts; `None` if they were too far apart for an engine to
-    /// ask.
-    pub(crate) fn motion(
-        &self,
-        pos12: &Pose3,
-        before: Option<&Pose3>,
-        normals: Option<[Vec3; 2]>,
-    ) -> Option<f32> {
-        let before = before?;
-        let motion = |way: &Way<'_>| way.motion([before, pos12], normals);
-        Some(self.ways(pos12).map(motion).fold(0.0, f32::max))
     }
 
     /// The contacts up to `margin` metres away that an engine gets; `before` are the ids of those of
@@ -245,6 +248,19 @@ impl<'s> Pair<'s> {
             .fold(of_probe, f32::max)
     }
 
+    /// How far the shapes may move against each other, in metres, and meet in nothing but one plane; 0
+    /// if that is not known.
+    pub(crate) fn level_reach(&self, pos12: &Pose3) -> f32 {
+        let reach = self.ways(pos12).map(|way| way.level_reach(pos12));
+        reach.fold(f32::INFINITY, f32::min)
+    }
+
+    /// How thick the thinner of the two is in metres, but for the thinnest parts of a VPS shape; 0 if
+    /// that is not known, as of a mesh.
+    pub(crate) fn thickness(&self) -> f32 {
+        self.thickness
+    }
+
     /// The size of the smallest shell in metres.
     pub(crate) fn size(&self) -> f32 {
         smallest(self.usual_ways())
@@ -258,8 +274,14 @@ impl<'s> Pair<'s> {
 }
 
 /// The size of the smallest shell in metres.
-fn smallest<'w>(ways: impl Iterator<Item = &'w Way<'w>>) -> f32 {
+fn smallest<'w, 's: 'w>(ways: impl Iterator<Item = &'w Way<'s>>) -> f32 {
     ways.map(Way::size).fold(f32::INFINITY, f32::min)
+}
+
+/// The thickness of the thinner of the two.
+fn thinner(vps: &VpsShape, other: &dyn Shape) -> f32 {
+    // It is half of what a box is thick.
+    vps.thickness().min(2.0 * core_real(other.ccd_thickness()))
 }
 
 fn deeper(a: PairContact, b: PairContact) -> PairContact {

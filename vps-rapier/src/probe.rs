@@ -12,6 +12,7 @@ use vps_core::{Aabb, DistanceField, Pose3, Trilinear, Vec3};
 use crate::VpsShape;
 use crate::contact::PairContact;
 use crate::real::{core_pose, core_real, core_vector, vector};
+use crate::surface::Surface;
 
 /// How many voxels two neighbouring points of an edge are apart at the most: the voxelmap shows
 /// little that is finer.
@@ -19,6 +20,9 @@ const STEP: f32 = 2.0;
 
 /// Most points of an edge; edges longer than all their steps are longer than any voxelmap.
 const MOST_POINTS: u32 = 1 << 12;
+
+/// How many spacings of the shell's points a triangle must be wide for some of them to meet it.
+const NARROW: f32 = 2.0;
 
 /// How many points of a circle there are.
 const CIRCLE: [u32; 2] = [8, 64];
@@ -33,6 +37,11 @@ pub(crate) struct Probe<'s> {
     far_error: f32,
     /// Metres between points.
     step: f32,
+    /// The cosine of half the angle between the normals at an edge of a surface that is just sharp
+    /// enough: between two points of the shell it stands out by what the voxelmap may be off.
+    bluntest: f32,
+    /// How wide triangles must be in metres for the points of the shell to meet them all.
+    narrowest: f32,
     /// Whether the shape of parry is the first of the two.
     is_first: bool,
 }
@@ -48,10 +57,14 @@ struct Tip {
 impl<'s> Probe<'s> {
     pub(crate) fn new(shape: &'s dyn Shape, vps: &'s VpsShape, is_first: bool) -> Self {
         let map = &vps.asset().voxelmap;
+        let field = map.trilinear();
+        let steepest = 2.0 * field.error_bound() / vps.spacing();
         Self {
             shape,
             vps,
-            field: map.trilinear(),
+            field,
+            bluntest: 1.0 / (1.0 + steepest * steepest).sqrt(),
+            narrowest: NARROW * vps.spacing(),
             solid: map.solid(),
             far_error: map.accuracy().far_m,
             step: STEP * map.grid().voxel_size(),
@@ -192,6 +205,8 @@ impl<'s> Probe<'s> {
             pose: *pose,
             around,
             step: self.step,
+            bluntest: self.bluntest,
+            narrowest: self.narrowest,
         };
         edges.of_shape(self.shape, 0, 0.0, visit);
     }
@@ -203,6 +218,9 @@ struct Edges {
     pose: Pose3,
     around: Aabb,
     step: f32,
+    /// Those of [`Probe`].
+    bluntest: f32,
+    narrowest: f32,
 }
 
 /// What the number of an element of a shape is multiplied with: points of its edges follow.
@@ -256,15 +274,8 @@ impl Edges {
                 let radius = rounded(round.border_radius);
                 self.of_shape(&round.inner_shape, first, radius, visit);
             }
-            TypedShape::TriMesh(mesh) => {
-                for number in mesh.bvh().intersect_aabb(&self.local_box(radius)) {
-                    self.triangle(&mesh.triangle(number), element(number), radius, visit);
-                }
-            }
-            TypedShape::HeightField(field) => {
-                field.map_elements_in_local_aabb(&self.local_box(radius), &mut |number, t| {
-                    self.triangle(t, element(number), radius, visit);
-                });
+            TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
+                self.sharp_edges(shape, &element, radius, visit);
             }
             TypedShape::Polyline(line) => {
                 for number in line.bvh().intersect_aabb(&self.local_box(radius)) {
@@ -300,6 +311,29 @@ impl Edges {
             }
             // A half-space has no edges; a custom shape that is none of ours, none that are known.
             TypedShape::HalfSpace(_) | TypedShape::Custom(_) => {}
+        }
+    }
+
+    /// The edges of a surface that stand out between the points of a shell. Flat and hollow ones have
+    /// nothing to say.
+    fn sharp_edges(
+        &self,
+        shape: &dyn Shape,
+        element: &impl Fn(u32) -> u32,
+        radius: f32,
+        visit: &mut impl FnMut(Tip),
+    ) {
+        let facets = Surface::of(shape).map(|s| s.facets_in(&self.local_bounds(radius)));
+        for facet in facets.unwrap_or_default() {
+            for (number, seam) in (0_u8..).zip(&facet.edges) {
+                let i = usize::from(number);
+                if facet.is_shared[i] || !seam.stands_out(self.bluntest, self.narrowest) {
+                    continue;
+                }
+                let ends = [facet.corners[i], facet.corners[(i + 1) % 3]];
+                let first = element(facet.number).wrapping_add(u32::from(number) << 10);
+                self.edge(ends, first, radius, visit);
+            }
         }
     }
 

@@ -1,12 +1,13 @@
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rapier3d::math::{Matrix, Real, Vector};
 use rapier3d::parry::bounding_volume::{Aabb as ParryAabb, BoundingSphere};
 use rapier3d::parry::mass_properties::MassProperties;
-use rapier3d::parry::shape::{Shape, ShapeType, SharedShape, TypedShape};
-use vps_core::{Aabb, Asset, Vec3};
+use rapier3d::parry::shape::{PolygonalFeatureMap, Shape, ShapeType, SharedShape, TypedShape};
+use vps_core::{Aabb, Asset, SurfaceMesh, Vec3};
 
+use crate::check::asked_for_faces;
 use crate::real::{core_real, core_vector, real, vector};
 use crate::thickness::thickness;
 
@@ -20,8 +21,9 @@ mod ray;
 pub enum Role {
     /// The field, if the other is not that rather.
     Voxelmap,
-    /// The shell if it has fewer points than the other (section 3.2), and the field too if the other
-    /// is thinner somewhere than twice the spacing of those points.
+    /// The shell if its points are closer together than the other's, and the field too if the other is
+    /// thinner somewhere than twice their spacing. (Section 3.2 takes the shell of fewer points: faster,
+    /// but a small body on a large one is then met by few points.)
     #[default]
     Mixed,
     /// The shell, if the other is not that rather.
@@ -41,6 +43,7 @@ pub struct VpsShape {
     thickness: f32,
     role: Role,
     file: Option<Arc<Path>>,
+    surface: Arc<OnceLock<SurfaceMesh>>,
 }
 
 /// How many times its spacing squared a point of a shell covers, about.
@@ -59,7 +62,15 @@ impl VpsShape {
             spacing,
             role: Role::Mixed,
             file: None,
+            surface: Arc::default(),
         }
+    }
+
+    /// The surface as a mesh to look at, where the field is zero; made when it is first asked for, and
+    /// shared by clones.
+    pub fn surface_mesh(&self) -> &SurfaceMesh {
+        self.surface
+            .get_or_init(|| self.asset.voxelmap.surface_mesh())
     }
 
     /// How far the points of the shell are apart in metres, about.
@@ -165,6 +176,12 @@ impl Shape for VpsShape {
 
     fn as_typed_shape(&self) -> TypedShape<'_> {
         TypedShape::Custom(self)
+    }
+
+    /// None: only parry's own dispatcher asks for them, where it finds no contacts.
+    fn as_polygonal_feature_map(&self) -> Option<(&dyn PolygonalFeatureMap, Real)> {
+        asked_for_faces();
+        None
     }
 
     fn ccd_thickness(&self) -> Real {

@@ -1,5 +1,8 @@
 //! One of the two ways to look at a pair: a shell in a field.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use rapier3d::parry::shape::{FeatureId, PackedFeatureId, Shape, TypedShape};
 use vps_core::{
     Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
@@ -8,6 +11,7 @@ use vps_core::{
 
 use crate::contact::PairContact;
 use crate::real::{core_real, core_vector};
+use crate::shape_field::{error_of, moved};
 use crate::surroundings::Surroundings;
 use crate::{Sampling, ShapeField, VpsShape};
 
@@ -32,20 +36,68 @@ enum Field<'s> {
     Ball(Ball),
     Cuboid(Cuboid),
     HalfSpace(HalfSpace),
-    Other(ShapeField<'s>),
+    Other(Nearby<'s>),
+}
+
+/// A shape of parry, of which only what is near the shell is looked at.
+struct Nearby<'s> {
+    shape: &'s dyn Shape,
+    thickness: f32,
+    picked: RefCell<Option<Rc<Picked<'s>>>>,
+}
+
+/// What of a shape is within `reach` metres of the shell in a pose.
+struct Picked<'s> {
+    pose: Pose3,
+    reach: f32,
+    field: ShapeField<'s>,
+}
+
+impl<'s> Nearby<'s> {
+    /// Calls `ask` with the field of what matters to a query up to `margin` metres away.
+    fn with_field<T>(
+        &self,
+        tree: &PointSphereTree<'_>,
+        pose: &Pose3,
+        margin: f32,
+        ask: impl FnOnce(&ShapeField<'s>) -> T,
+    ) -> T {
+        let reach = margin.max(self.thickness);
+        let before = self.picked.borrow().clone();
+        let before = before.filter(|p| p.pose == *pose && p.reach >= reach);
+        let picked = before.unwrap_or_else(|| {
+            let around = moved(&tree.bounds(), pose);
+            let field = ShapeField::near(self.shape, self.thickness, around, reach);
+            let picked = Rc::new(Picked {
+                pose: *pose,
+                reach,
+                field,
+            });
+            self.picked.replace(Some(picked.clone()));
+            picked
+        });
+        ask(&picked.field)
+    }
+
+    /// Whether all of the shape was picked for the query before.
+    fn holds_all(&self) -> bool {
+        let picked = self.picked.borrow();
+        picked.as_ref().is_some_and(|p| p.field.is_all())
+    }
 }
 
 /// Evaluates an expression with the field of a way as a variable of its own type, so that a query
-/// is compiled for each kind of field and decides nothing a point.
+/// is compiled for each kind of field and decides nothing a point. It is the field around the shell in
+/// a pose, as far as something up to `margin` metres away needs it.
 macro_rules! with_field {
-    ($way:expr, $field:ident => $body:expr) => {
+    ($way:expr, $pose:expr, $margin:expr, $field:ident => $body:expr) => {
         match &$way.field {
             Field::Trilinear($field) => $body,
             Field::Local($field) => $body,
             Field::Ball($field) => $body,
             Field::Cuboid($field) => $body,
             Field::HalfSpace($field) => $body,
-            Field::Other($field) => $body,
+            Field::Other(nearby) => nearby.with_field($way.tree, $pose, $margin, |$field| $body),
         }
     };
 }
@@ -87,7 +139,11 @@ impl<'s> Way<'s> {
             TypedShape::HalfSpace(half_space) => {
                 Field::HalfSpace(HalfSpace::new(core_vector(half_space.normal)))
             }
-            _ => Field::Other(ShapeField::new(shape, thickness)),
+            _ => Field::Other(Nearby {
+                shape,
+                thickness,
+                picked: RefCell::new(None),
+            }),
         };
         Self {
             tree: &shell.asset().tree,
@@ -98,9 +154,12 @@ impl<'s> Way<'s> {
         }
     }
 
-    /// Whether the shell as a whole may lie in the solid, going by the boxes.
+    /// Whether the shell as a whole may lie in the solid of a VPS shape, going by the boxes.
     pub(crate) fn may_be_within(&self, pos12: &Pose3) -> bool {
-        let solid = with_field!(self, field => field.bounds());
+        let Some(shape) = self.of_shape else {
+            return false;
+        };
+        let solid = shape.asset().voxelmap.solid();
         solid.may_hold(&self.tree.bounds(), &self.shell_to_field(pos12))
     }
 
@@ -108,15 +167,51 @@ impl<'s> Way<'s> {
     /// of the first.
     pub(crate) fn touches(&self, pos12: &Pose3) -> bool {
         let pose = self.shell_to_field(pos12);
-        with_field!(self, field => Query::new(self.tree, field, pose).touches())
+        with_field!(self, &pose, 0.0, field => Query::new(self.tree, field, pose).touches())
     }
 
     /// The deepest contact up to `margin` metres away.
     pub(crate) fn deepest(&self, pos12: &Pose3, margin: f32) -> Option<PairContact> {
         let pose = self.shell_to_field(pos12);
-        let query_deepest = |contact| self.on_surfaces(&pose, &contact);
-        with_field!(self, field => {
-            Query::new(self.tree, field, pose).with_margin(margin).deepest().map(query_deepest)
+        let (mut within, other) = match &self.field {
+            // What is far away is looked at if nothing is near.
+            Field::Other(nearby) => (margin.min(self.size()), Some(nearby)),
+            _ => (margin, None),
+        };
+        loop {
+            let found = with_field!(self, &pose, within, field => {
+                Query::new(self.tree, field, pose).with_margin(within).deepest()
+            });
+            if let Some(contact) = found {
+                return Some(self.on_surfaces(&pose, &contact, within));
+            }
+            if within >= margin {
+                return None;
+            }
+            within = match other {
+                Some(nearby) if !nearby.holds_all() => margin.min(4.0 * within),
+                _ => margin,
+            };
+        }
+    }
+
+    /// The normal out of the first shape that all contacts up to `margin` metres away have, if there is
+    /// one.
+    pub(crate) fn level_normal(&self, pos12: &Pose3, margin: f32) -> Option<Vec3> {
+        let pose = self.shell_to_field(pos12);
+        let inward = match &self.field {
+            Field::HalfSpace(field) => Some(field.inward_direction(Vec3::ZERO)),
+            Field::Other(nearby) => {
+                nearby.with_field(self.tree, &pose, margin, ShapeField::level_direction)
+            }
+            _ => None,
+        };
+        inward.map(|inward| {
+            if self.shell_is_first {
+                pose.rotation.inverse() * inward
+            } else {
+                -inward
+            }
         })
     }
 
@@ -135,7 +230,7 @@ impl<'s> Way<'s> {
         let contact = Query::new(self.tree, &Surroundings::new(shape), pose).closest()?;
         let in_field = pose.transform_point(contact.position);
         if shape.has_in_grid(in_field) {
-            return Some(self.on_surfaces(&pose, &contact));
+            return Some(self.on_surfaces(&pose, &contact, margin));
         }
         let on_field = shape.closest_on_surface(in_field);
         let inward = (on_field - in_field).normalize_or_zero();
@@ -147,11 +242,23 @@ impl<'s> Way<'s> {
         (penetration >= -margin).then(|| self.between(&pose, &exact, inward))
     }
 
-    /// The deepest of all contacts up to `margin` metres away of which something is true.
+    /// How far the shell may move, in metres, and meet nothing but one plane; 0 if that is not known.
+    pub(crate) fn level_reach(&self, pos12: &Pose3) -> f32 {
+        match (&self.field, self.level_normal(pos12, 0.0)) {
+            (Field::HalfSpace(_), _) => f32::INFINITY,
+            (Field::Other(nearby), Some(_)) => nearby.thickness,
+            _ => 0.0,
+        }
+    }
+
+    /// The deepest of all contacts up to `margin` metres away of which something is true. Of a point
+    /// of the shell and its normal out of the first shape, both in the frame of the first, `is_worth`
+    /// says at less cost whether that may be.
     pub(crate) fn deepest_of(
         &self,
         pos12: &Pose3,
         margin: f32,
+        is_worth: &dyn Fn(Vec3, Vec3) -> bool,
         is_wanted: &dyn Fn(&PairContact) -> bool,
     ) -> Option<PairContact> {
         let pose = self.shell_to_field(pos12);
@@ -160,12 +267,21 @@ impl<'s> Way<'s> {
             if deepest.is_some_and(|d| d.penetration >= contact.penetration) {
                 return;
             }
-            let contact = self.on_surfaces(&pose, &contact);
+            let (point, out) = if self.shell_is_first {
+                (contact.position, -contact.normal)
+            } else {
+                let out = pos12.rotation * contact.normal;
+                (pos12.transform_point(contact.position), out)
+            };
+            if !is_worth(point, out) {
+                return;
+            }
+            let contact = self.on_surfaces(&pose, &contact, margin);
             if is_wanted(&contact) {
                 deepest = Some(contact);
             }
         };
-        with_field!(self, field => {
+        with_field!(self, &pose, margin, field => {
             Query::new(self.tree, field, pose).with_margin(margin).for_each_contact(visit);
         });
         deepest
@@ -189,12 +305,12 @@ impl<'s> Way<'s> {
                 _ => None,
             }
         });
-        let manifold: ContactManifold<SPREAD_SIZE> = with_field!(self, field => {
+        let manifold: ContactManifold<SPREAD_SIZE> = with_field!(self, &pose, margin, field => {
             let query = Query::new(self.tree, field, pose).with_margin(margin).with_motion(motion);
             hint.map_or(query, |point| query.with_hint(point)).manifold()
         });
         let contacts = manifold.contacts().iter();
-        found.extend(contacts.map(|contact| self.on_surfaces(&pose, contact)));
+        found.extend(contacts.map(|contact| self.on_surfaces(&pose, contact, margin)));
     }
 
     /// What a contact found before is now, if this shell's point was it.
@@ -214,9 +330,9 @@ impl<'s> Way<'s> {
             point,
             position,
             normal,
-            penetration: with_field!(self, field => field.penetration(at, turned)),
+            penetration: with_field!(self, &pose, 0.0, field => field.penetration(at, turned)),
         };
-        Some(self.on_surfaces(&pose, &contact))
+        Some(self.on_surfaces(&pose, &contact, 0.0))
     }
 
     /// The deepest contact of each segment of a level, told apart by segments and not by points.
@@ -230,11 +346,11 @@ impl<'s> Way<'s> {
         let pose = self.shell_to_field(pos12);
         let level = level.clamp(1, self.tree.level_count());
         let visit = |segment, contact| {
-            let mut contact = self.on_surfaces(&pose, &contact);
+            let mut contact = self.on_surfaces(&pose, &contact, margin);
             contact.ids = self.in_order(PackedFeatureId::face(segment), PackedFeatureId::UNKNOWN);
             found.push(contact);
         };
-        with_field!(self, field => {
+        with_field!(self, &pose, margin, field => {
             Query::new(self.tree, field, pose).with_margin(margin).for_each_segment(level, visit);
         });
     }
@@ -243,7 +359,7 @@ impl<'s> Way<'s> {
     /// frame, of length one or zero. Lists them all.
     pub(crate) fn push_on_first(&self, pos12: &Pose3) -> Vec3 {
         let pose = self.shell_to_field(pos12);
-        let wrench = with_field!(self, field => {
+        let wrench = with_field!(self, &pose, 0.0, field => {
             Query::new(self.tree, field, pose).wrench(Vec3::ZERO, Weight::Area)
         });
         let on_shell = wrench.force.normalize_or_zero();
@@ -251,18 +367,6 @@ impl<'s> Way<'s> {
             on_shell
         } else {
             -(pose.rotation * on_shell)
-        }
-    }
-
-    /// How far the middle of the shell came from one pose to another, along the normals of the two
-    /// shapes if they are known: what rolls or slides goes aside.
-    pub(crate) fn motion(&self, poses: [&Pose3; 2], normals: Option<[Vec3; 2]>) -> f32 {
-        let middle = self.tree.bounds().center();
-        let [from, to] = poses.map(|pose| self.shell_to_field(pose).transform_point(middle));
-        let of_field = if self.shell_is_first { 1 } else { 0 };
-        match normals {
-            Some(normals) => (to - from).dot(normals[of_field]).abs(),
-            None => to.distance(from),
         }
     }
 
@@ -282,7 +386,15 @@ impl<'s> Way<'s> {
 
     /// How far what the field says may be off anywhere in metres.
     pub(crate) fn error(&self) -> f32 {
-        with_field!(self, field => field.error_bound()) + self.far_error
+        let of_field = match &self.field {
+            Field::Trilinear(field) => field.error_bound(),
+            Field::Local(field) => field.error_bound(),
+            Field::Ball(field) => field.error_bound(),
+            Field::Cuboid(field) => field.error_bound(),
+            Field::HalfSpace(field) => field.error_bound(),
+            Field::Other(nearby) => error_of(nearby.shape),
+        };
+        of_field + self.far_error
     }
 
     fn shell_to_field(&self, pos12: &Pose3) -> Pose3 {
@@ -304,9 +416,10 @@ impl<'s> Way<'s> {
 
     /// With the normal of the field, which does not depend on how the shell was sampled; where
     /// the field has none, that of the shell.
-    fn on_surfaces(&self, shell_to_field: &Pose3, contact: &Contact) -> PairContact {
+    fn on_surfaces(&self, shell_to_field: &Pose3, contact: &Contact, margin: f32) -> PairContact {
         let in_field = shell_to_field.transform_point(contact.position);
-        let inward = with_field!(self, field => field.inward_direction(in_field));
+        let inward =
+            with_field!(self, shell_to_field, margin, field => field.inward_direction(in_field));
         self.between(shell_to_field, contact, inward)
     }
 

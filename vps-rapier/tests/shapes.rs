@@ -118,64 +118,6 @@ fn a_scaled_shape_is_larger_all_over() {
     assert!(shape.scale_dyn(Vector::splat(-1.0), 0).is_none());
 }
 
-#[cfg(feature = "serde")]
-#[test]
-fn a_saved_world_goes_on_the_same() {
-    use vps_rapier::{SaveError, SavedShapes, narrow_phase};
-
-    let folder = Folder::new("saved");
-    let builder = VpsShapeBuilder::new(models::torus(16)).options(options());
-    let shape = builder.clone().cached_in(&folder.0).build().unwrap();
-    let mut world = PhysicsWorld {
-        narrow_phase: narrow_phase(),
-        ..PhysicsWorld::default()
-    };
-    world.insert(
-        RigidBodyBuilder::fixed(),
-        ColliderBuilder::cuboid(4.0, 0.1, 4.0),
-    );
-    for i in 0..2 {
-        let start = RigidBodyBuilder::dynamic().translation(Vector::Y * (0.5 + i as Real));
-        world.insert(start, ColliderBuilder::new(shape.clone().into()));
-    }
-    let mut colliders = world.colliders.clone();
-    let shapes = SavedShapes::take_out(&mut colliders).unwrap();
-    let text = serde_json::to_string(&(&colliders, &world.bodies, &shapes)).unwrap();
-    let read: (ColliderSet, RigidBodySet, SavedShapes) = serde_json::from_str(&text).unwrap();
-    let (mut colliders, bodies, shapes) = read;
-    shapes.put_back(&mut colliders).unwrap();
-    let mut second = PhysicsWorld {
-        narrow_phase: narrow_phase(),
-        colliders,
-        bodies,
-        ..PhysicsWorld::default()
-    };
-    for _ in 0..120 {
-        world.step();
-        second.step();
-    }
-    let heights = |w: &PhysicsWorld| {
-        let bodies = w.bodies.iter().map(|(_, b)| b.translation().y);
-        bodies.collect::<Vec<_>>()
-    };
-    assert_eq!(heights(&world).len(), 3);
-    for (a, b) in heights(&world).into_iter().zip(heights(&second)) {
-        assert!((a - b).abs() < 1e-3, "{a} {b}");
-    }
-    // What is in no file cannot be saved, and stays as it is.
-    let start = RigidBodyBuilder::dynamic();
-    let unsaved: SharedShape = builder.build().unwrap().into();
-    let (_, handle) = world.insert(start, ColliderBuilder::new(unsaved));
-    let error = SavedShapes::take_out(&mut world.colliders).unwrap_err();
-    assert_eq!(error, SaveError::NoFile(handle));
-    assert!(
-        world
-            .colliders
-            .iter()
-            .all(|(_, c)| c.shape().as_ball().is_none())
-    );
-}
-
 #[test]
 fn a_shape_is_as_thick_as_where_it_is_thin() {
     let thickness = |mesh: &Mesh| {

@@ -5,7 +5,7 @@
 
 mod support;
 
-use support::asset;
+use support::{asset, state};
 use vps_build::{Mesh, models};
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{VpsShape, narrow_phase};
@@ -42,27 +42,6 @@ fn heap(change: impl Fn(&mut PhysicsWorld), steps: usize) -> PhysicsWorld {
         world.step();
     }
     world
-}
-
-/// All bits of the state of all bodies.
-fn state(world: &PhysicsWorld) -> Vec<u64> {
-    let mut bits = Vec::new();
-    for (_, body) in world.bodies.iter() {
-        let (place, turn) = (body.translation(), body.rotation());
-        let numbers = [
-            place.to_array(),
-            body.linvel().to_array(),
-            body.angvel().to_array(),
-        ];
-        bits.extend(
-            numbers
-                .as_flattened()
-                .iter()
-                .map(|n| f64::from(*n).to_bits()),
-        );
-        bits.extend(turn.to_array().map(|n| f64::from(n).to_bits()));
-    }
-    bits
 }
 
 #[test]

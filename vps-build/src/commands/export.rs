@@ -217,69 +217,12 @@ fn face_of_voxel(drawing: &mut Drawing, center: Vec3, axis: usize, offset: f32) 
     drawing.faces.push((first..first + 4).collect());
 }
 
-/// The surface where the field is zero, by surface nets: a vertex in every cell of eight voxel
-/// centres with both signs, a square across every edge between two centres that differ in sign.
 fn surface(map: &Voxelmap<'_>) -> Drawing {
-    let grid = map.grid();
-    let dims = grid.dims();
-    let value = |x, y, z| map.center_penetration([x, y, z]);
-    let mut drawing = Drawing::default();
-    let mut vertex_of_cell = std::collections::HashMap::new();
-    for z in 0..dims[2] - 1 {
-        for y in 0..dims[1] - 1 {
-            for x in 0..dims[0] - 1 {
-                let corner = |i: u32| [x + (i & 1), y + (i >> 1 & 1), z + (i >> 2 & 1)];
-                let values = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| {
-                    let [x, y, z] = corner(i);
-                    value(x, y, z)
-                });
-                let (mut sum, mut crossings) = (Vec3::ZERO, 0);
-                for i in 0..8_u32 {
-                    for bit in [1, 2, 4] {
-                        let j = i | bit;
-                        let (a, b) = (values[i as usize], values[j as usize]);
-                        if j != i && (a > 0.0) != (b > 0.0) {
-                            let (from, to) = (grid.center(corner(i)), grid.center(corner(j)));
-                            sum += from + (to - from) * (a / (a - b));
-                            crossings += 1;
-                        }
-                    }
-                }
-                if crossings > 0 {
-                    vertex_of_cell.insert([x, y, z], drawing.vertices.len() as u32);
-                    let vertex = sum / crossings as f32;
-                    drawing.vertices.push((vertex, [180, 180, 190]));
-                }
-            }
-        }
+    let mesh = map.surface_mesh();
+    let grey = [180, 180, 190];
+    Drawing {
+        vertices: mesh.vertices.iter().map(|&v| (v, grey)).collect(),
+        faces: mesh.squares.iter().map(|s| s.to_vec()).collect(),
+        ..Drawing::default()
     }
-    // The four cells around an edge hold a vertex each.
-    for &[x, y, z] in vertex_of_cell.keys() {
-        let inside = value(x, y, z) > 0.0;
-        for axis in 0..3 {
-            let mut end = [x, y, z];
-            end[axis] += 1;
-            let other_inside = value(end[0], end[1], end[2]) > 0.0;
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            if inside == other_inside || [x, y, z][u] == 0 || [x, y, z][v] == 0 {
-                continue;
-            }
-            let around = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(du, dv)| {
-                let mut cell = [x, y, z];
-                cell[u] -= du;
-                cell[v] -= dv;
-                vertex_of_cell.get(&cell).copied()
-            });
-            let mut face: Vec<_> = around.into_iter().flatten().collect();
-            if !inside {
-                face.reverse();
-            }
-            if face.len() == 4 {
-                drawing.faces.push(face);
-            }
-        }
-    }
-    // A hash map has no order of its own.
-    drawing.faces.sort_unstable();
-    drawing
 }

@@ -55,7 +55,7 @@ pub(super) fn parse(bytes: &[u8], object: Option<&str>) -> Result<Mesh, Fault> {
 /// that ends with a backslash. The name of an object or a group is one word.
 fn next_statement<'t>(lines: &mut Lines<'t>, statement: &mut Vec<(usize, &'t [u8])>) -> bool {
     statement.clear();
-    while let Some((number, line)) = lines.next() {
+    for (number, line) in lines.by_ref() {
         let data = without_comment(line).trim_ascii_end();
         let keyword = words(data).next();
         if statement.is_empty() && keyword.is_some_and(|k| NAMES.contains(&k)) {

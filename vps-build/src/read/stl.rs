@@ -80,7 +80,7 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, Fault> {
     // Where the facet began that has not ended, and the corners it has.
     let mut facet: Option<(usize, usize)> = None;
     let mut is_solid = false;
-    while let Some((line, content)) = lines.next() {
+    for (line, content) in lines.by_ref() {
         let mut words = words(content);
         while let Some(word) = words.next() {
             let fault = |what: &str| Err(Fault::of_line(line, what));
