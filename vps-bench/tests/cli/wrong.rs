@@ -94,7 +94,7 @@ fn models_that_cannot_be_used_are_named() {
     };
     fails(&["none.obj"], &["none.obj", "models.toml"]);
     project.write("nan.obj", &BOX.replace("v 0.1 0.05 0.15", "v 0.1 inf 0.15"));
-    fails(&["nan.obj"], &["nan.obj:8: `inf`"]);
+    fails(&["nan.obj"], &["nan.obj:8:", "inf"]);
     project.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     fails(&["flat.obj"], &["flat.obj", "not closed"]);
     fails(&["box.obj", "--scale", "0"], &["scale"]);
@@ -120,6 +120,7 @@ fn options_that_messages_recommend_exist() {
             let text = fs::read_to_string(&path).unwrap();
             let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
             let words = code.flat_map(|l| l.split(|c: char| !c.is_ascii_lowercase() && c != '-'));
+            let words = words.filter(|w| !w.starts_with("---"));
             for option in words.filter(|w| w.len() > 2 && w.starts_with("--")) {
                 let is_known = help.iter().any(|help| help.contains(option));
                 let is_other = others.contains(&option);

@@ -107,11 +107,25 @@ fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
     let triangles: Vec<_> = triangles
         .map(|t| [t[0], t[1], t[2]].map(|v| v as u32))
         .collect();
-    let boundary = Mesh::new(&vertices, &triangles).map_err(|_| NoUnion::Failed)?;
+    let boundary = without_edges(&vertices, &triangles)?;
     if boundary.open_edges() > 0 {
         return Err(NoUnion::Failed);
     }
     Ok(boundary)
+}
+
+/// A mesh without those triangles of which two corners came to one place.
+fn without_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, NoUnion> {
+    let new = |vertices: &[DVec3], triangles: &[[u32; 3]]| {
+        Mesh::new(vertices, triangles).map_err(|_| NoUnion::Failed)
+    };
+    let mesh = new(vertices, triangles)?;
+    let is_whole = |&&[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
+    let whole: Vec<_> = mesh.triangles().iter().filter(is_whole).copied().collect();
+    if whole.len() == mesh.triangles().len() {
+        return Ok(mesh);
+    }
+    new(mesh.vertices(), &whole)
 }
 
 /// Planes a vertex is to be moved to.
@@ -198,7 +212,7 @@ fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<
         corner.unwrap_or_else(|| p + planes.way().clamp_length_max(MITER * by))
     };
     let vertices: Vec<_> = boundary.vertices().par_iter().map(moved).collect();
-    Mesh::new(&vertices, boundary.triangles()).map_err(|_| NoUnion::Failed)
+    without_edges(&vertices, boundary.triangles())
 }
 
 #[cfg(test)]
