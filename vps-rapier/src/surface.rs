@@ -91,7 +91,9 @@ impl<'s> Surface<'s> {
     /// All triangles that reach into a box, in the order of their numbers. Those at its border do not
     /// know all of their neighbours.
     pub(crate) fn facets_in(&self, bounds: &Aabb) -> Vec<Facet> {
-        let around = ParryAabb::new(vector(bounds.min), vector(bounds.max));
+        // The shape's own numbers may have 64 bits, and lie a rounding beyond a border made of them.
+        let rounding = f32::EPSILON * bounds.min.abs().max(bounds.max.abs()).max_element();
+        let around = ParryAabb::new(vector(bounds.min - rounding), vector(bounds.max + rounding));
         let mut found = Vec::new();
         let mut add = |number, triangle: &Triangle, vertices| {
             let normal = triangle.scaled_normal().try_normalize();
