@@ -361,7 +361,9 @@ impl Discs {
     pub fn reach(&self, lane: usize, direction: Vec3) -> f32 {
         let radius = self.radii[lane];
         let across = direction.dot(self.normals.get(lane));
-        let along = (1.0 - across * across).max(0.0).sqrt();
+        let along = f32x4::splat((1.0 - across * across).max(0.0))
+            .sqrt()
+            .to_array()[0];
         let bend = across * self.bulges[lane];
         // As in `rise`.
         let r = if bend < 0.0 {
