@@ -2,6 +2,7 @@
 
 use glamx::DVec3;
 
+use crate::triangle::{area, normal};
 use crate::{BuildError, Mesh};
 
 /// How thick a sheet is at most, as a part of its longest side: what numbers of six digits may be
@@ -11,14 +12,10 @@ const THICKNESS: f64 = 1e-5;
 /// # Errors
 /// When the mesh lies in a plane, whatever its orientation, and so bounds no solid.
 pub(crate) fn refuse_sheet(mesh: &Mesh) -> Result<(), BuildError> {
-    let normal = |t: usize| {
-        let [a, b, c] = mesh.corners(t);
-        (b - a).cross(c - a)
-    };
-    let triangles = 0..mesh.triangles().len();
-    let largest = triangles.max_by(|&s, &t| normal(s).length().total_cmp(&normal(t).length()));
-    let largest = largest.unwrap_or(0);
-    let (across, [on, ..]) = (normal(largest).normalize_or_zero(), mesh.corners(largest));
+    let triangles = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+    let largest = triangles.max_by(|&s, &t| area(s).total_cmp(&area(t)));
+    let largest = largest.unwrap_or_else(|| mesh.corners(0));
+    let (across, on) = (normal(largest), largest[0]);
     let (low, high) = mesh.bounds();
     let heights = mesh.vertices().iter().map(|&v| (v - on).dot(across));
     let (lowest, highest) = heights.fold((0.0_f64, 0.0_f64), |(lowest, highest), height| {

@@ -2,6 +2,7 @@ use glamx::DVec3;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::edges::Edges;
+use crate::triangle;
 
 /// A triangle mesh in metres, checked: its triangles refer to finite vertices and it extends in
 /// space.
@@ -271,12 +272,8 @@ impl Mesh {
 
     /// Area of all triangles in m².
     pub fn area(&self) -> f64 {
-        (0..self.triangles.len())
-            .map(|t| {
-                let [a, b, c] = self.corners(t);
-                0.5 * (b - a).cross(c - a).length()
-            })
-            .sum()
+        let triangles = 0..self.triangles.len();
+        triangles.map(|t| triangle::area(self.corners(t))).sum()
     }
 }
 

@@ -216,6 +216,7 @@ mod tests {
 
     use super::*;
     use crate::edges::Edges;
+    use crate::triangle;
 
     fn cut(outline: &[DVec3]) -> Vec<[u32; 3]> {
         let corners: Vec<_> = (0..outline.len() as u32).collect();
@@ -225,11 +226,8 @@ mod tests {
     }
 
     fn area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
-        let double = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| vertices[v as usize]);
-            (b - a).cross(c - a).length()
-        };
-        0.5 * triangles.iter().map(double).sum::<f64>()
+        let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
+        triangles.iter().map(corners).map(triangle::area).sum()
     }
 
     /// The triangles are bounded by the edges of the outline alone, and have its area between them.

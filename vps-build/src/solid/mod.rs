@@ -25,6 +25,7 @@ use self::union::{Layout, NoUnion, layout, union};
 use crate::edges::Edges;
 use crate::places::{Place, Places};
 use crate::solid_angle::SolidAngle;
+use crate::triangle::{self, normal};
 use crate::winding::Lines;
 use crate::{BuildError, Mesh};
 
@@ -92,40 +93,42 @@ pub(crate) fn solid<'m>(mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Solid
     if repairs.left_open {
         return open_solid(surface, grid, repairs);
     }
-    let mut found = layout(&surface);
-    let (mut places, is_simple) = Places::by_winding(&surface, grid);
-    if found == Layout::Simple && !is_simple {
-        found = Layout::Overlapping;
-    }
-    let boundary = match found {
-        Layout::Simple => surface,
-        _ => match union(&surface, found) {
-            Ok(boundary) => {
-                repairs.united = true;
-                let boundary = with_sheets(&boundary, &surface, grid)?;
-                places = Places::by_winding(&boundary, grid).0;
-                Cow::Owned(boundary)
-            }
-            Err(NoUnion::Empty) => return Err(BuildError::NotSolid),
-            Err(NoUnion::Failed) => {
-                repairs.left_overlapping = true;
-                let lines = Lines::new(&surface);
-                let in_solid = |p| lines.winding(p, |_| true) >= 1;
-                return without_hidden(&surface, places, grid, in_solid, repairs);
-            }
-        },
-    };
-    Ok(Solid {
-        mesh: boundary,
+    let closed = |mesh, places, repairs| Solid {
+        mesh,
         places,
         is_closed: true,
         repairs,
-    })
+    };
+    let mut found = layout(&surface);
+    if found == Layout::Simple {
+        let (places, is_simple) = Places::by_winding(&surface, grid);
+        if is_simple {
+            return Ok(closed(surface, places, repairs));
+        }
+        // Triangles that touch along lines may be parts that cross there.
+        found = Layout::Overlapping;
+    }
+    match union(&surface, found) {
+        Ok(boundary) => {
+            repairs.united = true;
+            let boundary = with_sheets(boundary, &surface, grid)?;
+            let (places, _) = Places::by_winding(&boundary, grid);
+            Ok(closed(Cow::Owned(boundary), places, repairs))
+        }
+        Err(NoUnion::Empty) => Err(BuildError::NotSolid),
+        Err(NoUnion::Failed) => {
+            repairs.left_overlapping = true;
+            let (places, _) = Places::by_winding(&surface, grid);
+            let lines = Lines::new(&surface);
+            let in_solid = |p| lines.winding(p, |_| true) >= 1;
+            without_hidden(&surface, places, grid, in_solid, repairs)
+        }
+    }
 }
 
 /// The boundary of a solid and the sheets without thickness outside of it: faces of the surface that
 /// a face on the same place cancels. Both of their sides count, so that the surface stays closed.
-fn with_sheets(boundary: &Mesh, surface: &Mesh, grid: &Grid) -> Result<Mesh, BuildError> {
+fn with_sheets(boundary: Mesh, surface: &Mesh, grid: &Grid) -> Result<Mesh, BuildError> {
     let lines = Lines::new(surface);
     let winding = |p| lines.winding(p, |_| true);
     let offset = FACE_OFFSET * f64::from(grid.voxel_size());
@@ -136,7 +139,7 @@ fn with_sheets(boundary: &Mesh, surface: &Mesh, grid: &Grid) -> Result<Mesh, Bui
     let count = surface.triangles().len();
     let sheets: Vec<usize> = (0..count).into_par_iter().filter(is_sheet).collect();
     if sheets.is_empty() {
-        return Ok(boundary.clone());
+        return Ok(boundary);
     }
     let first = boundary.vertices().len() as u32;
     let vertices = [boundary.vertices(), surface.vertices()].concat();
@@ -157,10 +160,10 @@ fn with_sheets(boundary: &Mesh, surface: &Mesh, grid: &Grid) -> Result<Mesh, Bui
 
 /// Points in front of and behind a face.
 fn sides(mesh: &Mesh, face: usize, offset: f64) -> [DVec3; 2] {
-    let [a, b, c] = mesh.corners(face);
-    let middle = (a + b + c) / 3.0;
-    let normal = (b - a).cross(c - a).normalize_or_zero() * offset;
-    [middle + normal, middle - normal]
+    let corners = mesh.corners(face);
+    let middle = corners.iter().sum::<DVec3>() / 3.0;
+    let way = normal(corners) * offset;
+    [middle + way, middle - way]
 }
 
 impl<'m> Solid<'m> {
@@ -254,8 +257,7 @@ pub(crate) fn surface<'m>(
     let (holes, filling) = holes::fill(mesh.vertices(), &triangles);
     let area = |triangles: &[[u32; 3]]| -> f64 {
         let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices()[v as usize]);
-        let double = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length();
-        triangles.iter().map(corners).map(double).sum()
+        triangles.iter().map(corners).map(triangle::area).sum()
     };
     repairs.left_open = match sign {
         Sign::Winding => false,
@@ -299,10 +301,10 @@ fn turn_by_fill(mesh: &Mesh, grid: &Grid, triangles: &mut Vec<[u32; 3]>) -> usiz
     let mut turned = 0;
     let mut t = 0;
     triangles.retain_mut(|triangle| {
-        let [a, b, c] = mesh.corners(t);
+        let corners = mesh.corners(t);
         t += 1;
-        let middle = (a + b + c) / 3.0;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let middle = corners.iter().sum::<DVec3>() / 3.0;
+        let normal = normal(corners);
         let is_outside = |direction: DVec3| {
             let steps = 1..=2 * SIDE_REACH;
             let mut ahead =

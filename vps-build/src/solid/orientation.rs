@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use crate::Mesh;
 use crate::edges::Edges;
 use crate::health::UnionFind;
-use crate::triangle::signed_volume;
+use crate::triangle::{area, signed_volume};
 use crate::winding::Lines;
 
 /// The parts of a closed surface that share no vertex.
@@ -71,10 +71,6 @@ impl Parts {
             around == i32::from(volume < 0.0)
         })
     }
-}
-
-fn area([a, b, c]: [DVec3; 3]) -> f64 {
-    (b - a).cross(c - a).length()
 }
 
 /// Turns triangles until those with a common edge agree, most of each patch stays as it was, and

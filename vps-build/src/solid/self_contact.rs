@@ -8,7 +8,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::box_tree::BoxTree;
 use crate::Mesh;
-use crate::triangle::distance;
+use crate::triangle::{distance, normal};
 
 /// What parts of a surface have to do with each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,7 +59,7 @@ fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
         return false;
     }
     let [p, q] = [a, b].map(|t| mesh.corners(t as usize));
-    let [n, m] = [p, q].map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero());
+    let [n, m] = [p, q].map(normal);
     if n.dot(m) > OPPOSITE || !overlap(p, q) {
         return false;
     }

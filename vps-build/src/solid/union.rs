@@ -18,7 +18,7 @@ use super::box_tree::BoxTree;
 use super::orientation::Parts;
 use super::self_contact::SelfContact;
 use crate::Mesh;
-use crate::triangle::closest_point;
+use crate::triangle::{area, closest_point, normal};
 
 /// Up to what part of the diagonal of a mesh a gap is none.
 const GAP: f64 = 5e-5;
@@ -163,20 +163,13 @@ impl Planes {
 /// What a plane weighs beside all planes of a vertex to count.
 const DAMPING: f64 = 1e-9;
 
-/// The unit normal of a triangle, and twice its area.
-fn normal_and_area([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
-    let product = (b - a).cross(c - a);
-    let area = product.length();
-    (product / area.max(f64::MIN_POSITIVE), area)
-}
-
 /// The surface with each face moved outwards: each vertex goes where the planes of its faces do.
 fn widened(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
     let mut planes = vec![Planes::NONE; surface.vertices().len()];
     for (t, corners) in surface.triangles().iter().enumerate() {
-        let (normal, area) = normal_and_area(surface.corners(t));
+        let at = surface.corners(t);
         for &v in corners {
-            planes[v as usize].add(normal, by, area);
+            planes[v as usize].add(normal(at), by, area(at));
         }
     }
     let vertices = surface.vertices().iter().zip(&planes);
@@ -206,8 +199,8 @@ fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<
                     corner = Some(to);
                 }
             }
-            let (normal, area) = normal_and_area(origin);
-            planes.add(normal, (origin[0] - p).dot(normal), area);
+            let normal = normal(origin);
+            planes.add(normal, (origin[0] - p).dot(normal), area(origin));
         });
         corner.unwrap_or_else(|| p + planes.way().clamp_length_max(MITER * by))
     };
