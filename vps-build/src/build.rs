@@ -308,7 +308,7 @@ pub fn build(
         solid = solid.on(mesh, options.sign, &grid)?;
     }
     on_stage(Stage::Distances);
-    let voxelmap = voxelmap(&solid, grid, options)?;
+    let voxelmap = voxelmap(&solid, &bvh, grid, options)?;
     let mass = if solid.is_closed {
         mass_of_mesh(&solid.mesh)?
     } else {
@@ -337,9 +337,6 @@ pub fn build(
 /// What part of the memory limit is for voxels nobody asked for.
 const AUTO_MEMORY: u64 = 4;
 
-/// How many points thin walls are looked for at before there is a pointshell, about.
-const WALL_SAMPLES: f64 = 10_000.0;
-
 /// The grid for the thin walls of a solid, if there are some: as fine as they need, as far as a part
 /// of the memory limit allows.
 fn finer_grid(
@@ -363,10 +360,8 @@ fn finer_grid(
     while of_size(0.9 * finest).is_ok() {
         finest *= 0.9;
     }
-    let samples = sample::spread(solid, (solid.area() / WALL_SAMPLES).sqrt());
-    let places: Vec<_> = samples.points.into_iter().map(|p| (p, 1.0)).collect();
     // Walls that the finest voxels would be too large for are no reason for finer ones.
-    let walls = ThinWalls::of(solid, bvh, &places, finest..coarsest, None);
+    let walls = ThinWalls::sampled(solid, bvh, finest..coarsest);
     let sufficient = walls.sufficient_voxel_m.map(|size| size.max(finest));
     sufficient.map(of_size).transpose()
 }
@@ -452,6 +447,7 @@ pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<G
 
 fn voxelmap(
     solid: &Solid<'_>,
+    bvh: &Bvh,
     grid: Grid,
     options: &BuildOptions,
 ) -> Result<Voxelmap<'static>, BuildError> {
@@ -476,11 +472,11 @@ fn voxelmap(
             Source::Table(&table)
         }
         (_, ClosestPoints::GradientWalk) => {
-            table = by_gradient_walk(mesh, &grid, places);
+            table = by_gradient_walk(mesh, bvh, &grid, places);
             Source::Table(&table)
         }
         (_, ClosestPoints::Exact) => {
-            exact = Exact::new(mesh, &grid, places);
+            exact = Exact::new(bvh, &grid, places);
             if is_dense {
                 table = exact.all();
                 Source::Table(&table)

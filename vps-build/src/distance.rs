@@ -15,16 +15,12 @@ use crate::triangle::closest_point;
 pub(crate) struct Exact<'a> {
     grid: &'a Grid,
     places: &'a Places,
-    bvh: Bvh,
+    bvh: &'a Bvh,
 }
 
 impl<'a> Exact<'a> {
-    pub(crate) fn new(mesh: &Mesh, grid: &'a Grid, places: &'a Places) -> Self {
-        Self {
-            grid,
-            places,
-            bvh: Bvh::new(mesh),
-        }
+    pub(crate) fn new(bvh: &'a Bvh, grid: &'a Grid, places: &'a Places) -> Self {
+        Self { grid, places, bvh }
     }
 
     /// The penetration of a voxel's centre in metres, positive inside, and the closest point of
@@ -65,7 +61,7 @@ impl<'a> Exact<'a> {
 ///
 /// Never too small, and too large by as much as a way along layers can be longer than a straight
 /// one.
-pub(crate) fn by_gradient_walk(mesh: &Mesh, grid: &Grid, places: &Places) -> Vec<f32> {
+pub(crate) fn by_gradient_walk(mesh: &Mesh, bvh: &Bvh, grid: &Grid, places: &Places) -> Vec<f32> {
     let layers = layers(grid, places);
     let [nx, ny, _] = grid.dims().map(|n| n as usize);
     let voxel = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)].map(|c| c as u32);
@@ -88,7 +84,7 @@ pub(crate) fn by_gradient_walk(mesh: &Mesh, grid: &Grid, places: &Places) -> Vec
         }
     }
     // The triangle closest to each surface voxel, in place of the voxel.
-    let exact = Exact::new(mesh, grid, places);
+    let exact = Exact::new(bvh, grid, places);
     let surface: Vec<u32> = (0..ends.len() as u32)
         .filter(|&i| layers[i as usize] == 0)
         .collect();

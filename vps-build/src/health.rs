@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use crate::Mesh;
+use crate::bvh::Bvh;
 use crate::edges::Edges;
-use crate::sample::opposed_within;
+use crate::thin_walls::ThinWalls;
 use crate::triangle::signed_volume;
 
 /// A health report of a mesh.
@@ -93,7 +94,7 @@ impl Health {
             area_m2: mesh.area(),
             volume_m3: (0..triangles.len()).map(volume).sum(),
             extents_m: (high - low).to_array(),
-            thin_share: opposed_within(mesh, voxel_size),
+            thin_share: ThinWalls::sampled(mesh, &Bvh::new(mesh), 0.0..voxel_size).share,
         }
     }
 

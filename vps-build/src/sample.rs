@@ -10,7 +10,7 @@ use vps_core::{DistanceField, Vec3, Voxelmap};
 
 use crate::kdtree::KdTree;
 use crate::places::{AROUND, for_each_overlapped};
-use crate::triangle::closest_point;
+use crate::triangle::{area, closest_point, normal};
 use crate::{Mesh, PointCount};
 
 /// How many voxels of the sampling grid two points are apart: √2, as the paper suggests.
@@ -82,8 +82,7 @@ fn shares_of_area(mesh: &Mesh, spaced: &Spaced, normals: &[Vec3]) -> Vec<f32> {
                     let closest = by_place.closest(center, 1)[0];
                     let others = || by_place.closest(center, CLOSEST).into_iter();
                     let point = Some(closest).filter(faces).or_else(|| others().find(faces));
-                    let area = 0.5 * (b - a).cross(c - a).length();
-                    shares.push((point.unwrap_or(closest), area));
+                    shares.push((point.unwrap_or(closest), area([a, b, c])));
                 });
             }
             shares
@@ -116,9 +115,8 @@ fn for_each_piece(triangle: [DVec3; 3], longest: f64, visit: &mut impl FnMut([DV
 /// As close to `count` points as some spacing gives.
 fn about(mesh: &Mesh, count: u32) -> Spaced {
     let target = f64::from(count);
-    // With less there are more points along the longest edge alone, however little area there is.
-    let least = longest_edge(mesh) / (2.0 * REACH * target);
-    let mut spacing = (mesh.area() / (COVERED * target)).sqrt().max(least);
+    let least = least_spacing(mesh, target);
+    let mut spacing = about_spacing(mesh, target);
     // Spacings that gave too many points and too few; the truth lies between.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
     let mut last: Option<(f64, f64)> = None;
@@ -160,6 +158,18 @@ fn about(mesh: &Mesh, count: u32) -> Spaced {
     best.expect("at least one round").1
 }
 
+/// The distance that about so many points have from each other.
+pub(crate) fn about_spacing(mesh: &Mesh, count: f64) -> f64 {
+    let on_area = (mesh.area() / (COVERED * count)).sqrt();
+    on_area.max(least_spacing(mesh, count))
+}
+
+/// With less between them there are more points along the longest edge alone, however little area
+/// there is.
+fn least_spacing(mesh: &Mesh, count: f64) -> f64 {
+    longest_edge(mesh) / (2.0 * REACH * count)
+}
+
 /// How many spacings a place of the surface may be from the closest point: less than one, and the
 /// way from the centre of a voxel to the triangle and on to the place, each half of a diagonal.
 const REACH: f64 = 2.23;
@@ -186,8 +196,7 @@ pub(crate) fn spread(mesh: &Mesh, spacing: f64) -> Spaced {
                 let mut candidates = Vec::new();
                 for t in triangles.clone() {
                     let triangle = mesh.corners(t);
-                    let [a, b, c] = triangle;
-                    let normal = (b - a).cross(c - a).normalize_or_zero();
+                    let normal = normal(triangle);
                     let first = candidates.len();
                     for_each_overlapped(triangle, origin, size, |[x, y, z], center| {
                         candidates.push(([z, y, x], closest_point(triangle, center), normal));
@@ -323,29 +332,6 @@ impl Cells {
         // What is near lies most often in the same cell.
         in_cell([0; 3]) || AROUND.into_iter().any(in_cell)
     }
-}
-
-/// The share of the surface, from 0 to 1, behind which the other side of a wall is closer than
-/// `thickness` metres.
-pub(crate) fn opposed_within(mesh: &Mesh, thickness: f64) -> f64 {
-    // Fine enough that behind every thin place there is a point almost opposite.
-    let samples = spread(mesh, 0.5 * thickness);
-    let mut cells = Cells::new(thickness, mesh.bounds().0);
-    for &point in &samples.points {
-        cells.push(point);
-    }
-    let is_thin = |&i: &usize| {
-        let (point, normal) = (samples.points[i], samples.normals[i]);
-        cells.any_near(point, |j| {
-            let to_other = samples.points[j] - point;
-            let depth = -to_other.dot(normal);
-            let aside = (to_other + normal * depth).length();
-            let opposed = samples.normals[j].dot(normal) < OPPOSED;
-            opposed && depth > 0.0 && depth < thickness && aside < thickness
-        })
-    };
-    let thin = (0..samples.points.len()).filter(is_thin).count();
-    thin as f64 / samples.points.len() as f64
 }
 
 /// The gradient of the field at each point; where it has none, in the middle of a thin wall, the

@@ -8,6 +8,8 @@ use vps_core::{DistanceField, Voxelmap};
 
 use crate::Mesh;
 use crate::bvh::Bvh;
+use crate::sample::{about_spacing, spread};
+use crate::triangle::normal;
 
 /// How much of a surface stands for walls thinner than a voxel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +29,21 @@ const NEGLECTED: f64 = 0.05;
 /// The two sides of a wall are parallel to within 25 degrees.
 const PARALLEL: f64 = 0.9;
 
+/// At how many points of a mesh walls are looked for, about.
+const SAMPLES: f64 = 10_000.0;
+
 impl ThinWalls {
+    /// Of a mesh, before there is a pointshell.
+    pub(crate) fn sampled(mesh: &Mesh, bvh: &Bvh, thin: Range<f64>) -> Self {
+        let spacing = about_spacing(mesh, SAMPLES);
+        if spacing == 0.0 {
+            return Self::default();
+        }
+        let points = spread(mesh, spacing).points;
+        let points: Vec<_> = points.into_iter().map(|point| (point, 1.0)).collect();
+        Self::of(mesh, bvh, &points, thin, None)
+    }
+
     /// At points of a surface, each standing for an area; walls count whose thickness in metres is in
     /// a range.
     pub(crate) fn of(
@@ -76,10 +92,7 @@ struct Wall {
 /// The wall behind a point of a surface, if its thickness is in a range: found along the
 /// normal, by steps as long as nothing is in the way.
 fn wall(mesh: &Mesh, bvh: &Bvh, point: DVec3, thin: &Range<f64>) -> Option<Wall> {
-    let normal = |t: u32| {
-        let [a, b, c] = mesh.corners(t as usize);
-        (b - a).cross(c - a).normalize_or_zero()
-    };
+    let normal = |t: u32| normal(mesh.corners(t as usize));
     let front = bvh.closest(point, 0);
     let outward = normal(front.triangle);
     let least = 1e-4 * thin.end;
@@ -102,13 +115,11 @@ fn wall(mesh: &Mesh, bvh: &Bvh, point: DVec3, thin: &Range<f64>) -> Option<Wall>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::triangle::area;
 
     fn of(mesh: &Mesh, voxel_size: f64) -> ThinWalls {
         let middle = |t: usize| mesh.corners(t).iter().sum::<DVec3>() / 3.0;
-        let area = |t: usize| {
-            let [a, b, c] = mesh.corners(t);
-            (b - a).cross(c - a).length()
-        };
+        let area = |t: usize| area(mesh.corners(t));
         let count = mesh.triangles().len();
         let points: Vec<_> = (0..count).map(|t| (middle(t), area(t))).collect();
         ThinWalls::of(mesh, &Bvh::new(mesh), &points, 0.0..voxel_size, None)
