@@ -12,6 +12,12 @@ pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
+/// The smallest height of a triangle in metres.
+pub(crate) fn width([a, b, c]: [DVec3; 3]) -> f64 {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    2.0 * area([a, b, c]) / longest.max(f64::MIN_POSITIVE)
+}
+
 /// The point of the triangle closest to `p`, by the Voronoi regions of its features (Ericson,
 /// Real-Time Collision Detection, 5.1.5).
 pub fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
@@ -36,16 +42,46 @@ pub fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
         return a + ab * (d1 / (d1 - d3));
     }
     let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 && d4 - d3 + (d5 - d6) > 0.0 {
         let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return b + (c - b) * t;
     }
     let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
         return a + ac * (d2 / (d2 - d6));
     }
-    let inverse = 1.0 / (va + vb + vc);
-    a + ab * (vb * inverse) + ac * (vc * inverse)
+    let sum = va + vb + vc;
+    let longest = ab.length_squared().max(ac.length_squared());
+    // Twice the area, squared, and what rounding may make of it.
+    let rounding = f64::EPSILON * longest * longest.max(ap.length_squared());
+    if sum * CERTAIN > rounding {
+        return a + ab * (vb / sum) + ac * (vc / sum);
+    }
+    // As good as an edge.
+    let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| closest_on_segment(from, to, p));
+    let nearer = |u: DVec3, v: DVec3| {
+        if v.distance_squared(p) < u.distance_squared(p) {
+            v
+        } else {
+            u
+        }
+    };
+    edges.into_iter().fold(a, nearer)
+}
+
+/// How much of a triangle's extent its closest point may be off.
+const CERTAIN: f64 = 1e-3;
+
+fn closest_on_segment(from: DVec3, to: DVec3, p: DVec3) -> DVec3 {
+    let along = to - from;
+    let part = (p - from).dot(along) / along.length_squared();
+    // Of no length it is NaN, and the end is as good.
+    from + along
+        * if part.is_finite() {
+            part.clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
 }
 
 /// How far two triangles that do not cross are apart, in metres.
@@ -130,6 +166,17 @@ mod tests {
                 prop_assert!((p.distance(closest_point(t, p)) - expected).abs() < 1e-9);
             }
             prop_assert_eq!(closest_point([a; 3], p), a);
+        }
+
+        /// A triangle that is next to an edge has the closest point of that edge.
+        #[test]
+        fn slivers_are_as_good_as_edges(a in vector(), b in vector(), p in vector(), ulps in 0..4_i32) {
+            let near = f64::EPSILON * f64::from(ulps);
+            for c in [b * (1.0 + near), b - DVec3::X * near, a.midpoint(b) + DVec3::Y * near] {
+                let expected = closest_on_segment(a, b, p).distance(p);
+                let found = closest_point([a, b, c], p);
+                prop_assert!((found.distance(p) - expected).abs() < 1e-6, "{found}");
+            }
         }
 
         /// No sampled point of the triangle is closer, and the point lies in the triangle.
