@@ -2,12 +2,12 @@
 
 use glamx::DVec3;
 
-use crate::triangle::{area, normal};
+use crate::triangle::{area, normal, signed_volume};
 use crate::{BuildError, Mesh};
 
 /// How thick a sheet is at most, as a part of its longest side: what numbers of six digits may be
 /// off.
-const THICKNESS: f64 = 1e-5;
+pub(crate) const THICKNESS: f64 = 1e-5;
 
 /// # Errors
 /// When the mesh lies in a plane, whatever its orientation, and so bounds no solid.
@@ -30,6 +30,14 @@ pub(crate) fn refuse_sheet(mesh: &Mesh) -> Result<(), BuildError> {
         });
     }
     Ok(())
+}
+
+/// Whether what a closed mesh bounds is on the average no thicker than a sheet.
+pub(crate) fn bounds_a_sheet(mesh: &Mesh) -> bool {
+    let (low, high) = mesh.bounds();
+    let corners = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+    let volume: f64 = corners.map(|t| signed_volume(t, low)).sum();
+    2.0 * volume <= THICKNESS * (high - low).max_element() * mesh.area()
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! OFF: the counts, a line for each vertex, a line for each face.
+//! OFF: the counts, the vertices, the faces, as a rule each on a line of its own.
 
 use super::Fault;
 use super::polygons::Polygons;
@@ -6,7 +6,49 @@ use super::text::{Lines, coordinates, integer, shown, text};
 use crate::Mesh;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let mut lines = Lines::new(text(bytes)?);
+    let text = text(bytes)?;
+    // The format has no lines, but colours, which many files have, end with them.
+    by_lines(text).or_else(|fault| by_words(text).ok_or(fault))
+}
+
+/// `OFF`, counts of vertices, faces and edges, coordinates, and faces without colours, on any lines;
+/// nothing if that is not all there is.
+fn by_words(text: &[u8]) -> Option<Mesh> {
+    let mut lines = Lines::new(text);
+    let lines = std::iter::from_fn(|| lines.next_words());
+    let mut words = lines.flat_map(|(line, words)| words.map(move |word| (line, word)));
+    if !words.next()?.1.eq_ignore_ascii_case(b"OFF") {
+        return None;
+    }
+    let mut count = || integer(words.next()?.1);
+    let [vertices, faces, _edges] = [count()?, count()?, count()?];
+    let mut polygons = Polygons::counted_from(0);
+    for _ in 0..vertices {
+        let mut line = 0;
+        let place = words.by_ref().take(3).map(|(at, word)| {
+            line = at;
+            word
+        });
+        let place = coordinates(0, place).ok()?;
+        polygons.push_vertex(place, line);
+    }
+    for _ in 0..faces {
+        let (line, corners) = words.next()?;
+        for _ in 0..integer(corners)? {
+            let vertex = integer(words.next()?.1)?;
+            polygons.push_corner(u32::try_from(vertex).ok()?);
+        }
+        polygons.end_face(line);
+    }
+    if words.next().is_some() {
+        return None;
+    }
+    polygons.mesh().ok()
+}
+
+/// A vertex and a face on each line, and what they have more.
+fn by_lines(text: &[u8]) -> Result<Mesh, Fault> {
+    let mut lines = Lines::new(text);
     let [vertices, faces] = counts(&mut lines)?;
     let mut polygons = Polygons::counted_from(0);
     for i in 0..vertices {
@@ -109,7 +151,7 @@ fn keyword(line: usize, word: &[u8]) -> Result<&[u8], Fault> {
     }
     let Some(end) = word
         .windows(3)
-        .position(|w| w == b"OFF")
+        .position(|w| w.eq_ignore_ascii_case(b"OFF"))
         .map(|start| start + 3)
     else {
         let what = format!("`{}` instead of OFF: is this an OFF file?", shown(word));

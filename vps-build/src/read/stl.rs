@@ -48,6 +48,8 @@ fn binary(bytes: &[u8]) -> Result<Mesh, Fault> {
         told as usize
     };
     if count > held || is_whole && count < held {
+        // Unless it is text of two bytes a letter.
+        text(bytes)?;
         return Err(Fault::of_file(format!(
             "the header speaks of {told} triangles, but the file holds {held}: export it again"
         )));
@@ -72,6 +74,24 @@ fn binary(bytes: &[u8]) -> Result<Mesh, Fault> {
     polygons.mesh()
 }
 
+/// Whether a facet comes next.
+fn is_facet<'t>(words: &(impl Iterator<Item = &'t [u8]> + Clone)) -> bool {
+    let mut ahead = words.clone();
+    let mut is_next = |word: &[u8]| ahead.next().is_some_and(|w| w.eq_ignore_ascii_case(word));
+    is_next(b"facet") && is_next(b"normal")
+}
+
+/// Takes what stands on the line before the loop, whatever it is.
+fn skip_normal<'t>(words: &mut (impl Iterator<Item = &'t [u8]> + Clone)) {
+    let mut ahead = words.clone();
+    while ahead
+        .next()
+        .is_some_and(|w| !w.eq_ignore_ascii_case(b"outer"))
+    {
+        *words = ahead.clone();
+    }
+}
+
 /// `facet normal x y z outer loop vertex x y z ... endloop endfacet`, on as many lines as they
 /// like, within `solid name` and `endsolid name`.
 fn ascii(bytes: &[u8]) -> Result<Mesh, Fault> {
@@ -87,7 +107,8 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, Fault> {
             match (word.to_ascii_lowercase().as_slice(), &mut facet) {
                 (b"solid", None) => {
                     is_solid = true;
-                    break;
+                    // A name of any words.
+                    while !is_facet(&words) && words.next().is_some() {}
                 }
                 (b"endsolid", None) => {
                     is_solid = false;
@@ -95,15 +116,9 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, Fault> {
                 }
                 (b"facet", None) => {
                     facet = Some((line, 0));
-                    // The normal is whatever stands before the loop.
-                    let mut ahead = words.clone();
-                    while ahead
-                        .next()
-                        .is_some_and(|w| !w.eq_ignore_ascii_case(b"outer"))
-                    {
-                        words = ahead.clone();
-                    }
+                    skip_normal(&mut words);
                 }
+                (b"normal", Some((_, 0))) => skip_normal(&mut words),
                 (b"outer" | b"loop" | b"endloop", Some(_)) => {}
                 (b"vertex", Some((_, corners))) => {
                     let place = coordinates(line, words.by_ref().take(3))?;

@@ -303,6 +303,9 @@ fn off_as_programs_write_it() {
             off_counts("# a box\n\nOFF # text\n\n8 6 0 # counts\n\n# corners"),
         ),
         ("Windows", off.replace('\n', "\r\n")),
+        ("lower case", off_counts("off\n8 6 0")),
+        ("one line", off.replace('\n', " ")),
+        ("a word on each line", off.replace(' ', "\n")),
         ("an edge as a face", off_counts("OFF\n8 7 0") + "2 0 1\n"),
     ] {
         is_the_box(&text, MeshFormat::Off, what);
@@ -448,6 +451,12 @@ fn stl_as_programs_write_it() {
         ),
         ("Windows", text.replace('\n', "\r\n")),
         ("zeros behind", text.clone() + "\0\0\0"),
+        ("an end mark", text.clone() + "\x1a"),
+        ("one line", text.replace('\n', " ")),
+        (
+            "a normal of its own line",
+            text.replace("normal", "\nnormal"),
+        ),
         (
             "few lines",
             text.replace("loop\n", "loop ")

@@ -70,15 +70,16 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// A line up to a `#`.
+/// A line up to a `#`, unless that is part of a number such as `1.#INF`.
 pub(super) fn without_comment(line: &[u8]) -> &[u8] {
-    let end = line.iter().position(|&b| b == b'#');
+    let begins = |&i: &usize| line[i] == b'#' && (i == 0 || line[i - 1] != b'.');
+    let end = (0..line.len()).find(begins);
     &line[..end.unwrap_or(line.len())]
 }
 
-/// What blanks separate.
+/// What blanks separate; the mark some systems end a text with is a blank, too.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
-    line.split(|b| b.is_ascii_whitespace() || *b == 0x0b)
+    line.split(|b| b.is_ascii_whitespace() || matches!(b, 0x0b | 0x1a))
         .filter(|word| !word.is_empty())
 }
 
@@ -86,6 +87,11 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     let text = str::from_utf8(word).ok()?;
     text.parse().ok().or_else(|| {
+        // What is no number, as C libraries write it.
+        let lower = text.trim_start_matches(['-', '+']).to_ascii_lowercase();
+        if lower.starts_with("nan(") || lower.starts_with("1.#") {
+            return Some(f64::NAN);
+        }
         // Fortran's exponents of double precision.
         let is_double = text.contains(['d', 'D']) && !text.contains(['n', 'N']);
         let text = is_double.then(|| text.replace(['d', 'D'], "e"))?;
@@ -156,8 +162,12 @@ mod tests {
         ] {
             assert_eq!(number(word.as_bytes()), Some(value), "{word}");
         }
-        assert!(number(b"NaN").unwrap().is_nan() && number(b"-inf").unwrap() < 0.0);
-        for word in ["1,5", "0x10", "d", "-1.#IND", "", "1e", "end"] {
+        assert!(number(b"-inf").unwrap() < 0.0);
+        for word in ["NaN", "-nan(ind)", "-1.#IND", "1.#QNAN", "1.#INF"] {
+            assert!(number(word.as_bytes()).unwrap().is_nan(), "{word}");
+        }
+        assert_eq!(without_comment(b"v 1.#INF 2 # place"), b"v 1.#INF 2 ");
+        for word in ["1,5", "0x10", "d", "", "1e", "end", "nano"] {
             assert_eq!(number(word.as_bytes()), None, "{word}");
         }
     }

@@ -12,6 +12,8 @@ use rustc_hash::FxHashMap;
 use spade::handles::{DirectedEdgeHandle, FixedVertexHandle, VertexHandle};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
+use crate::flat::THICKNESS;
+
 /// Cuts polygons; keeps its memory from one to the next.
 #[derive(Default)]
 pub(super) struct Triangulator {
@@ -54,7 +56,12 @@ impl Triangulator {
         self.flat.clear();
         let flat = |&c: &u32| DVec2::new(at(c)[u], at(c)[v]);
         self.flat.extend(corners.iter().map(flat));
-        if !self.is_seen_from_first() && self.delaunay(vertices, triangles).is_some() {
+        if !self.is_seen_from_first()
+            && (self.delaunay(vertices, 0.0, triangles).is_some()
+                || self
+                    .delaunay(vertices, self.rounding(), triangles)
+                    .is_some())
+        {
             return;
         }
         triangles.extend(corners[1..].windows(2).map(|e| [corners[0], e[0], e[1]]));
@@ -66,9 +73,21 @@ impl Triangulator {
         edges.all(|edge| orientation(self.flat[0], edge[0], edge[1]) > 0.0)
     }
 
+    /// How far a corner may be from the edge it was written to lie on, if numbers have six digits.
+    fn rounding(&self) -> f64 {
+        let from_first = self.flat.iter().map(|p| p.distance(self.flat[0]));
+        THICKNESS * from_first.fold(0.0, f64::max)
+    }
+
     /// Appends the triangles of the constrained Delaunay triangulation inside of the polygon, or
-    /// none if its outline crosses itself.
-    fn delaunay(&self, vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Option<()> {
+    /// none if its outline crosses itself. Edges pass through the corners that are no further from
+    /// them than `rounding`.
+    fn delaunay(
+        &self,
+        vertices: &[DVec3],
+        rounding: f64,
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> Option<()> {
         let mut place_at = FxHashMap::default();
         let mut places: Vec<Place> = Vec::with_capacity(self.flat.len());
         let mut outline = Vec::with_capacity(self.flat.len());
@@ -103,9 +122,13 @@ impl Triangulator {
         let mut seams = Vec::new();
         let next = outline.iter().cycle().skip(1);
         for (&from, &to) in outline.iter().zip(next) {
-            let pieces = cdt.try_add_constraint(handles[from]?, handles[to]?);
-            if pieces.is_empty() {
-                return None;
+            let mut pieces = Vec::new();
+            for step in way(&places, [from, to], rounding).windows(2) {
+                let more = cdt.try_add_constraint(handles[step[0]]?, handles[step[1]]?);
+                if more.is_empty() {
+                    return None;
+                }
+                pieces.extend(more);
             }
             for (i, &piece) in pieces.iter().enumerate() {
                 let ends = cdt.directed_edge(piece).vertices();
@@ -173,6 +196,26 @@ impl HasPosition for Place {
     fn position(&self) -> Point2<f64> {
         Point2::new(self.flat.x, self.flat.y)
     }
+}
+
+/// The places an edge passes, from its first to its last.
+fn way(places: &[Place], [from, to]: [usize; 2], rounding: f64) -> Vec<usize> {
+    if rounding == 0.0 {
+        return vec![from, to];
+    }
+    let start = places[from].flat;
+    let along = places[to].flat - start;
+    let length = along.length();
+    let passed = places.iter().enumerate().filter_map(|(i, place)| {
+        let way = place.flat - start;
+        let (ahead, aside) = (way.dot(along) / length, way.perp_dot(along) / length);
+        let is_passed = aside.abs() <= rounding && ahead > rounding && ahead < length - rounding;
+        is_passed.then_some((ahead, i))
+    });
+    let mut passed: Vec<_> = passed.collect();
+    passed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let passed = passed.into_iter().map(|(_, i)| i);
+    std::iter::once(from).chain(passed).chain([to]).collect()
 }
 
 /// The corner of a place that is no corner.
@@ -276,6 +319,22 @@ mod tests {
                 check(&outline, expected);
                 let reversed: Vec<_> = outline.iter().rev().copied().collect();
                 check(&reversed, expected);
+            }
+        }
+    }
+
+    /// A corner on an edge of its own polygon lies beside it by rounding.
+    #[test]
+    fn a_corner_may_touch_an_edge() {
+        let notched = [[0, 0], [4, 0], [4, 2], [3, 2], [2, 0], [1, 2], [0, 2]];
+        for i in 0..20 {
+            let turn = DQuat::from_rotation_z(0.3 * f64::from(i));
+            for digits in [1e6, 1e9, 1e17] {
+                let outline = flat(&notched.map(|p| p.map(f64::from)));
+                let rounded = |p: DVec3| (turn * p * digits).round() / digits;
+                let outline: Vec<_> = outline.into_iter().map(rounded).collect();
+                let area = area(&outline, &cut(&outline));
+                assert!((area - 6.0).abs() < 1e-4, "{i} {digits}: {area}");
             }
         }
     }
