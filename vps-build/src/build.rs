@@ -181,6 +181,20 @@ pub enum BuildError {
         /// What they may take.
         limit_mib: u64,
     },
+    /// Too many triangles of parts that overlap.
+    #[error(
+        "parts of the mesh overlap or touch, and the union of {triangles} triangles needs \
+         {needed_mib} MiB to find, the limit is {limit_mib} MiB: choose a higher limit, or simplify \
+         the mesh"
+    )]
+    UnionMemory {
+        /// All of the mesh.
+        triangles: usize,
+        /// What they take.
+        needed_mib: u64,
+        /// What they may take.
+        limit_mib: u64,
+    },
     /// Distances that do not fit 16 bits.
     #[error(
         "distances of up to {max_m} m do not fit 16 bits with {precision} decimal places: choose \
@@ -298,14 +312,14 @@ pub fn build(
     let mesh = mesh.as_ref();
     let mut grid = self::grid(mesh, options, points)?;
     on_stage(Stage::Solid);
-    let mut solid = solid(mesh, options.sign, &grid)?;
+    let mut solid = solid(mesh, options.sign, &grid, options.memory_limit)?;
     on_stage(Stage::Voxels);
     let bvh = Bvh::new(&solid.mesh);
     if options.resolution == Resolution::Auto
         && let Some(finer) = finer_grid(mesh, &solid.mesh, &bvh, &grid, options, points)?
     {
         grid = finer;
-        solid = solid.on(mesh, options.sign, &grid)?;
+        solid = solid.on(mesh, options.sign, &grid, options.memory_limit)?;
     }
     on_stage(Stage::Distances);
     let voxelmap = voxelmap(&solid, &bvh, grid, options)?;

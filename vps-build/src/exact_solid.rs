@@ -47,7 +47,7 @@ impl ExactSolid {
         let options = BuildOptions::default();
         let (local, origin) = frame::local(mesh, voxel_size(mesh, &options)?);
         let grid = grid(&local, &options, 0.0)?;
-        let solid = solid(&local, sign, &grid)?;
+        let solid = solid(&local, sign, &grid, options.memory_limit)?;
         let shown = solid.mesh.moved(origin);
         // Winding numbers are those of the closed surface, with what is hidden within the solid.
         let closed = if solid.is_closed {

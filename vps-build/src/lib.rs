@@ -38,6 +38,7 @@ mod bends;
 mod build;
 mod bvh;
 mod cache;
+mod cells;
 mod cluster;
 mod distance;
 mod edges;

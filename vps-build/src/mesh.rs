@@ -238,6 +238,14 @@ impl Mesh {
         }
     }
 
+    /// Other triangles of the same vertices.
+    pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
+        Self {
+            vertices: self.vertices.clone(),
+            triangles,
+        }
+    }
+
     /// All vertices in metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices

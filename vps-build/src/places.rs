@@ -143,9 +143,9 @@ impl Places {
         self.index(voxel).is_some_and(|i| self.inside[i])
     }
 
-    /// Whether no voxel's centre is in the solid.
-    pub(crate) fn is_empty(&self) -> bool {
-        !self.inside.contains(&true)
+    /// Whether a voxel that no triangle touches is in the solid.
+    pub(crate) fn have_interior(&self) -> bool {
+        self.places.contains(&Place::Inside)
     }
 
     /// The n-th of the voxels that are stored.

@@ -5,11 +5,11 @@ use std::ops::Range;
 
 use glamx::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 use vps_core::{DistanceField, Vec3, Voxelmap};
 
+use crate::cells::Cells;
 use crate::kdtree::KdTree;
-use crate::places::{AROUND, for_each_overlapped};
+use crate::places::for_each_overlapped;
 use crate::triangle::{area, closest_point, normal};
 use crate::{Mesh, PointCount};
 
@@ -267,70 +267,11 @@ impl Spaced {
             self.points[other].distance_squared(point) < closest
                 && self.normals[other].dot(normal) > OPPOSED
         };
-        if !self.cells.any_near(point, is_taken) {
+        if self.cells.find_near(point, is_taken).is_none() {
             self.cells.push(point);
             self.points.push(point);
             self.normals.push(normal);
         }
-    }
-}
-
-/// Numbered points by the cells of a lattice they lie in.
-struct Cells {
-    size: f64,
-    origin: DVec3,
-    /// The last point of each cell.
-    last: FxHashMap<[i32; 3], u32>,
-    /// For each point the one before it in its cell, or [`NO_POINT`].
-    before: Vec<u32>,
-}
-
-const NO_POINT: u32 = u32::MAX;
-
-impl Cells {
-    fn new(size: f64, origin: DVec3) -> Self {
-        Self {
-            size,
-            origin,
-            last: FxHashMap::default(),
-            before: Vec::new(),
-        }
-    }
-
-    fn cell(&self, point: DVec3) -> [i32; 3] {
-        // Far away, where numbers saturate, cells become one.
-        let at = (point - self.origin) / self.size;
-        at.to_array().map(|c| c.floor() as i32)
-    }
-
-    /// Adds the next point.
-    fn push(&mut self, point: DVec3) {
-        let number = self.before.len() as u32;
-        let last = self.last.insert(self.cell(point), number);
-        self.before.push(last.unwrap_or(NO_POINT));
-    }
-
-    /// Whether something is so for a point in the cell of `point`, or in the 26 around it: all that
-    /// are no further than the size of a cell, and more.
-    fn any_near(&self, point: DVec3, mut is_so: impl FnMut(usize) -> bool) -> bool {
-        let cell = self.cell(point);
-        let mut in_cell = |[x, y, z]: [i32; 3]| {
-            let near = [
-                cell[0].saturating_add(x),
-                cell[1].saturating_add(y),
-                cell[2].saturating_add(z),
-            ];
-            let mut number = self.last.get(&near).copied().unwrap_or(NO_POINT);
-            while number != NO_POINT {
-                if is_so(number as usize) {
-                    return true;
-                }
-                number = self.before[number as usize];
-            }
-            false
-        };
-        // What is near lies most often in the same cell.
-        in_cell([0; 3]) || AROUND.into_iter().any(in_cell)
     }
 }
 

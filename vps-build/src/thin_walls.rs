@@ -9,7 +9,8 @@ use vps_core::{DistanceField, Voxelmap};
 use crate::Mesh;
 use crate::bvh::Bvh;
 use crate::sample::{about_spacing, spread};
-use crate::triangle::normal;
+use crate::solid::self_contact::gap;
+use crate::triangle::{normal, width};
 
 /// How much of a surface stands for walls thinner than a voxel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,15 +94,24 @@ struct Wall {
 /// normal, by steps as long as nothing is in the way.
 fn wall(mesh: &Mesh, bvh: &Bvh, point: DVec3, thin: &Range<f64>) -> Option<Wall> {
     let normal = |t: u32| normal(mesh.corners(t as usize));
+    // What is no gap is no wall.
+    let least = gap(mesh);
+    // The normal of a sliver means nothing.
+    let is_sliver = |t: u32| width(mesh.corners(t as usize)) <= least;
     let front = bvh.closest(point, 0);
+    if is_sliver(front.triangle) {
+        return None;
+    }
     let outward = normal(front.triangle);
-    let least = 1e-4 * thin.end;
     let (mut way, mut guess) = (least, front.triangle);
     while way < thin.end {
         let at = front.point - outward * way;
         let closest = bvh.closest(at, guess);
         guess = closest.triangle;
-        if closest.distance <= least && normal(closest.triangle).dot(outward) < -PARALLEL {
+        if closest.distance <= least
+            && normal(closest.triangle).dot(outward) < -PARALLEL
+            && !is_sliver(closest.triangle)
+        {
             return (way >= thin.start).then(|| Wall {
                 thickness: way,
                 middle: front.point - outward * (0.5 * way),

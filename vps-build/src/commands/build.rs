@@ -259,6 +259,7 @@ fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -
     let (map, tree) = (&asset.voxelmap, &asset.tree);
     let [x, y, z] = map.grid().dims();
     let kib = |bytes: usize| bytes.div_ceil(1024);
+    let is_auto = args.options().resolution == Resolution::Auto;
     format!(
         "{}: {triangles} triangles, {x} x {y} x {z} voxels of {:.6} m in {} KiB, {} points and {} \
          levels in {} KiB, {seconds:.2} s\nsign: {}\n{}{}",
@@ -269,13 +270,13 @@ fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -
         tree.level_count(),
         kib(tree.byte_len()),
         sign(args.sign, &built.repairs),
-        thin_walls(&built.thin_walls, map.grid().voxel_size()),
+        thin_walls(&built.thin_walls, map.grid().voxel_size(), is_auto),
         frame(asset.origin),
     )
 }
 
 /// What is to be said of thin walls, as a line; nothing where there are none.
-fn thin_walls(walls: &ThinWalls, voxel_size: f32) -> String {
+fn thin_walls(walls: &ThinWalls, voxel_size: f32, is_auto: bool) -> String {
     let Some(enough) = walls.sufficient_voxel_m else {
         return String::new();
     };
@@ -288,9 +289,14 @@ fn thin_walls(walls: &ThinWalls, voxel_size: f32) -> String {
     } else {
         String::new()
     };
+    let remark = if is_auto {
+        ", which needs a higher --memory-limit"
+    } else {
+        ", or --voxels auto"
+    };
     format!(
         "thin walls: {} of the surface stands for walls thinner than a voxel of {voxel_size:.6} \
-         m{lost}: --voxel-size {enough:.3e} or --voxels auto would do\n",
+         m{lost}: --voxel-size {enough:.3e} would do{remark}\n",
         percent(walls.share),
     )
 }

@@ -8,9 +8,10 @@
 //! faces is left open, and its generalised winding numbers decide.
 
 mod box_tree;
+mod fans;
 mod holes;
 mod orientation;
-mod self_contact;
+pub(crate) mod self_contact;
 mod union;
 
 use std::borrow::Cow;
@@ -23,6 +24,7 @@ use vps_core::Grid;
 use self::orientation::{Parts, turn_by_neighbours};
 use self::union::{Layout, NoUnion, layout, union};
 use crate::edges::Edges;
+use crate::flat::bounds_a_sheet;
 use crate::places::{Place, Places};
 use crate::solid_angle::SolidAngle;
 use crate::triangle::{self, normal};
@@ -86,8 +88,19 @@ pub(crate) struct Solid<'m> {
     pub(crate) repairs: Repairs,
 }
 
+/// Bytes a triangle takes while the union of parts is found.
+const BYTES_PER_UNITED: u64 = 2000;
+
 /// The solid that the mesh means, on a grid.
-pub(crate) fn solid<'m>(mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Solid<'m>, BuildError> {
+///
+/// # Errors
+/// When it encloses nothing, or a union would take more than `memory_limit` bytes.
+pub(crate) fn solid<'m>(
+    mesh: &'m Mesh,
+    sign: Sign,
+    grid: &Grid,
+    memory_limit: u64,
+) -> Result<Solid<'m>, BuildError> {
     let mut repairs = Repairs::default();
     let surface = surface(mesh, sign, grid, &mut repairs)?;
     if repairs.left_open {
@@ -108,7 +121,17 @@ pub(crate) fn solid<'m>(mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Solid
         // Triangles that touch along lines may be parts that cross there.
         found = Layout::Overlapping;
     }
+    let triangles = surface.triangles().len();
+    let needed = triangles as u64 * BYTES_PER_UNITED;
+    if needed > memory_limit {
+        return Err(BuildError::UnionMemory {
+            triangles,
+            needed_mib: needed.div_ceil(1 << 20),
+            limit_mib: memory_limit >> 20,
+        });
+    }
     match union(&surface, found) {
+        Ok(boundary) if bounds_a_sheet(&boundary) => Err(BuildError::NotSolid),
         Ok(boundary) => {
             repairs.united = true;
             let boundary = with_sheets(boundary, &surface, grid)?;
@@ -168,9 +191,15 @@ fn sides(mesh: &Mesh, face: usize, offset: f64) -> [DVec3; 2] {
 
 impl<'m> Solid<'m> {
     /// The same solid on another grid.
-    pub(crate) fn on(self, mesh: &'m Mesh, sign: Sign, grid: &Grid) -> Result<Self, BuildError> {
+    pub(crate) fn on(
+        self,
+        mesh: &'m Mesh,
+        sign: Sign,
+        grid: &Grid,
+        memory_limit: u64,
+    ) -> Result<Self, BuildError> {
         if !self.is_closed {
-            return solid(mesh, sign, grid);
+            return solid(mesh, sign, grid, memory_limit);
         }
         let (places, _) = Places::by_winding(&self.mesh, grid);
         Ok(Self { places, ..self })
@@ -186,7 +215,7 @@ fn open_solid<'m>(
     let angle = SolidAngle::new(&surface);
     let winding = |p| angle.winding(p);
     let (places, is_simple) = Places::by_generalized_winding(&surface, grid, winding);
-    if places.is_empty() {
+    if !places.have_interior() {
         return Err(BuildError::NotSolid);
     }
     if !is_simple {
@@ -232,6 +261,20 @@ pub(crate) fn surface<'m>(
     grid: &Grid,
     repairs: &mut Repairs,
 ) -> Result<Cow<'m, Mesh>, BuildError> {
+    if sign != Sign::Fill {
+        let whole = once_each_way(mesh);
+        let removed = mesh.triangles().len() - whole.len();
+        let is_closed = !whole.is_empty() && Edges::of(&whole).open_count() == 0;
+        let kept = if removed == 0 {
+            Cow::Borrowed(mesh)
+        } else {
+            Cow::Owned(mesh.with_triangles(whole))
+        };
+        if is_closed && Parts::of(&kept).face_outwards() {
+            repairs.removed_faces = removed;
+            return Ok(kept);
+        }
+    }
     let mut triangles = without_doubles(mesh);
     repairs.removed_faces = mesh.triangles().len() - triangles.len();
     if triangles.is_empty() {
@@ -239,19 +282,14 @@ pub(crate) fn surface<'m>(
     }
     if sign == Sign::Fill {
         let before = triangles.len();
-        let kept = Mesh::new(mesh.vertices(), &triangles)?;
+        let kept = mesh.with_triangles(triangles.clone());
         repairs.turned_faces = turn_by_fill(&kept, grid, &mut triangles);
         repairs.hidden_faces = before - triangles.len();
         if triangles.is_empty() {
             return Err(BuildError::NotSolid);
         }
-    } else if repairs.removed_faces == 0
-        && Edges::of(&triangles).open_count() == 0
-        && Parts::of(mesh).face_outwards()
-    {
-        return Ok(Cow::Borrowed(mesh));
     } else {
-        let kept = Mesh::new(mesh.vertices(), &triangles)?;
+        let kept = mesh.with_triangles(triangles.clone());
         repairs.turned_faces = turn_by_neighbours(&kept, &mut triangles);
     }
     let (holes, filling) = holes::fill(mesh.vertices(), &triangles);
@@ -274,6 +312,21 @@ pub(crate) fn surface<'m>(
 
 /// Above what share of its area the faces that close a mesh mean that it has no holes but cracks.
 const MOST_CLOSED: f64 = 0.5;
+
+/// All triangles with three corners, each once each way it turns. Where bodies share a face it is
+/// there both ways.
+fn once_each_way(mesh: &Mesh) -> Vec<[u32; 3]> {
+    let mut seen = FxHashSet::default();
+    let mut is_new = |&&[a, b, c]: &&[u32; 3]| {
+        let turns = [[a, b, c], [b, c, a], [c, a, b]];
+        a != b && b != c && c != a && seen.insert(turns.into_iter().min())
+    };
+    mesh.triangles()
+        .iter()
+        .filter(&mut is_new)
+        .copied()
+        .collect()
+}
 
 /// All triangles with three corners, each once, whichever way it turns.
 fn without_doubles(mesh: &Mesh) -> Vec<[u32; 3]> {

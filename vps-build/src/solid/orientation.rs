@@ -1,28 +1,36 @@
 //! Which way the triangles of a surface face.
 
+use std::borrow::Cow;
+
 use glamx::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::fans::Fans;
+use super::holes;
+use super::self_contact::gap;
 use crate::Mesh;
 use crate::edges::Edges;
 use crate::health::UnionFind;
 use crate::triangle::{area, signed_volume};
 use crate::winding::Lines;
 
-/// The parts of a closed surface that share no vertex.
+/// The bodies that a closed surface bounds.
 pub(super) struct Parts {
     part_of: Vec<u32>,
     volumes: Vec<f64>,
     /// The largest triangle of each.
     largest: Vec<u32>,
+    are_clear: bool,
 }
 
 impl Parts {
     pub(super) fn of(mesh: &Mesh) -> Self {
-        let mut vertices = UnionFind::new(mesh.vertices().len());
-        for &[a, b, c] in mesh.triangles() {
-            vertices.join(a, b);
-            vertices.join(b, c);
+        let fans = Fans::of(mesh, gap(mesh));
+        let mut roots = UnionFind::new(fans.vertices.len());
+        for &[a, b, c] in &fans.of_triangles {
+            roots.join(a, b);
+            roots.join(b, c);
         }
         let (origin, _) = mesh.bounds();
         let mut numbers = FxHashMap::default();
@@ -30,11 +38,12 @@ impl Parts {
             part_of: Vec::with_capacity(mesh.triangles().len()),
             volumes: Vec::new(),
             largest: Vec::new(),
+            are_clear: fans.are_clear,
         };
         let mut areas = Vec::new();
-        for (t, &[vertex, ..]) in mesh.triangles().iter().enumerate() {
+        for (t, &[fan, ..]) in fans.of_triangles.iter().enumerate() {
             let next = parts.volumes.len() as u32;
-            let part = *numbers.entry(vertices.root(vertex)).or_insert(next);
+            let part = *numbers.entry(roots.root(fan)).or_insert(next);
             if part == next {
                 parts.volumes.push(0.0);
                 parts.largest.push(t as u32);
@@ -52,9 +61,9 @@ impl Parts {
         parts
     }
 
-    /// Whether each part has a positive volume.
+    /// Whether each part has a positive volume, and it is clear which they are.
     pub(super) fn face_outwards(&self) -> bool {
-        self.volumes.iter().all(|&volume| volume >= 0.0)
+        self.are_clear && self.volumes.iter().all(|&volume| volume >= 0.0)
     }
 
     /// Whether parts that do not touch are each the boundary of the solid: with nothing around those
@@ -73,9 +82,8 @@ impl Parts {
     }
 }
 
-/// Turns triangles until those with a common edge agree, most of each patch stays as it was, and
-/// the outermost patches are not inside out; where one of these is turned, all within it are.
-/// Returns how many were turned.
+/// Turns triangles until those with a common edge agree, most of each patch stays as it was, and no
+/// patch is inside out; where one is turned, all within it are. Returns how many were turned.
 pub(super) fn turn_by_neighbours(mesh: &Mesh, triangles: &mut [[u32; 3]]) -> usize {
     let before = triangles.to_vec();
     let edges = Edges::of(triangles);
@@ -91,81 +99,85 @@ pub(super) fn turn_by_neighbours(mesh: &Mesh, triangles: &mut [[u32; 3]]) -> usi
             triangles[t].reverse();
         }
     }
-    let is_turned = |t: usize, triangles: &[[u32; 3]]| triangles[t] != before[t];
-    let volumes = volumes(mesh, &patches, &edges, |t| is_turned(t, triangles));
-    if volumes.iter().any(|&volume| volume < 0.0) {
-        let sense = |t: usize| if is_turned(t, triangles) { -1 } else { 1 };
-        let senses: Vec<i32> = (0..triangles.len()).map(sense).collect();
-        let inside_out = inside_out(mesh, &patches, &volumes, &senses);
-        for (triangle, &patch) in triangles.iter_mut().zip(&patches.patch_of) {
-            if inside_out[patch as usize] {
-                triangle.reverse();
-            }
+    let inside_out = inside_out(mesh, &patches, triangles);
+    for (triangle, &patch) in triangles.iter_mut().zip(&patches.patch_of) {
+        if inside_out[patch as usize] {
+            triangle.reverse();
         }
     }
-    (0..before.len())
-        .filter(|&t| is_turned(t, triangles))
-        .count()
+    let pairs = triangles.iter().zip(&before);
+    pairs.filter(|(now, before)| now != before).count()
 }
 
-/// The volume of each patch, closed from the middle of its rim.
-fn volumes(
-    mesh: &Mesh,
-    patches: &Patches,
-    edges: &Edges,
-    is_turned: impl Fn(usize) -> bool,
-) -> Vec<f64> {
-    let mut rims = vec![(DVec3::ZERO, 0.0); patches.count];
-    for edge in edges.groups().filter(|uses| uses.len() != 2).flatten() {
-        let (from, to) = edge.between;
-        let [from, to] = [from, to].map(|v| mesh.vertices()[v as usize]);
-        let length = from.distance(to);
-        let rim = &mut rims[patches.patch_of[edge.triangle as usize] as usize];
-        rim.0 += from.midpoint(to) * length;
-        rim.1 += length;
+/// Which patches are inside out, each taken for a body of its own with its holes closed. A patch
+/// turns with the one around it, so a mirrored body keeps its cavities; it is inside out if it
+/// has a negative volume then and no solid around it that it could be a cavity of.
+fn inside_out(mesh: &Mesh, patches: &Patches, triangles: &[[u32; 3]]) -> Vec<bool> {
+    let mut bodies = vec![Vec::new(); patches.count];
+    for (triangle, &patch) in triangles.iter().zip(&patches.patch_of) {
+        bodies[patch as usize].push(*triangle);
     }
+    bodies.par_iter_mut().for_each(|body| {
+        let (_, filling) = holes::fill(mesh.vertices(), body);
+        body.extend(filling);
+    });
+    let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices()[v as usize]);
     let (low, _) = mesh.bounds();
-    let mut volumes = vec![0.0; patches.count];
-    for (t, &patch) in patches.patch_of.iter().enumerate() {
-        let (sum, length) = rims[patch as usize];
-        let middle = if length > 0.0 { sum / length } else { low };
-        let volume = signed_volume(mesh.corners(t), middle);
-        volumes[patch as usize] += if is_turned(t) { -volume } else { volume };
+    let gap = gap(mesh);
+    let volume = |body: &Vec<[u32; 3]>| -> f64 {
+        let volume: f64 = body.iter().map(|t| signed_volume(corners(t), low)).sum();
+        let area: f64 = body.iter().map(|t| area(corners(t))).sum();
+        // What is no thicker than a gap has none.
+        let is_flat = 2.0 * volume.abs() <= gap * area;
+        if is_flat { 0.0 } else { volume }
+    };
+    let volumes: Vec<f64> = bodies.iter().map(volume).collect();
+    if volumes.iter().all(|&volume| volume >= 0.0) {
+        return vec![false; patches.count];
     }
-    volumes
-}
-
-/// Which patches are to be turned: the outermost ones of negative volume, and those within them. So
-/// a mirrored body keeps its cavities.
-fn inside_out(mesh: &Mesh, patches: &Patches, volumes: &[f64], senses: &[i32]) -> Vec<bool> {
-    let lines = Lines::new(mesh);
-    let mut a_triangle = vec![0; patches.count];
-    for (t, &patch) in patches.patch_of.iter().enumerate().rev() {
-        a_triangle[patch as usize] = t;
-    }
-    // Which other patches wind around each patch.
+    let owners = (0_u32..).zip(&bodies);
+    let owners: Vec<u32> = owners.flat_map(|(p, b)| b.iter().map(move |_| p)).collect();
+    let lines = Lines::of(Cow::Owned(mesh.with_triangles(bodies.concat())));
+    // Which others wind around each patch, and how often, for most of its area: a part of it may lie
+    // on another.
     let around = |patch: usize| {
-        let [a, b, c] = mesh.corners(a_triangle[patch]);
-        let mut windings: FxHashMap<u32, i32> = FxHashMap::default();
-        lines.for_each_crossing((a + b + c) / 3.0, |t, change| {
-            *windings.entry(patches.patch_of[t as usize]).or_default() +=
-                change * senses[t as usize];
-        });
-        windings.remove(&(patch as u32));
-        windings.retain(|_, winding| *winding != 0);
-        let mut around: Vec<u32> = windings.into_keys().collect();
+        let mut windings: FxHashMap<u32, f64> = FxHashMap::default();
+        let mut all = 0.0;
+        for triangle in bodies[patch].iter().map(corners) {
+            let area = area(triangle);
+            all += area;
+            lines.for_each_crossing(triangle.iter().sum::<DVec3>() / 3.0, |t, change| {
+                *windings.entry(owners[t as usize]).or_default() += area * f64::from(change);
+            });
+        }
+        let windings = windings.into_iter();
+        let windings = windings.map(|(other, sum)| (other, (sum / all).round() as i32));
+        let mut around: Vec<(u32, i32)> = windings
+            .filter(|&(other, winding)| other != patch as u32 && winding != 0)
+            .collect();
         around.sort_unstable();
         around
     };
-    let around: Vec<Vec<u32>> = (0..patches.count).map(around).collect();
-    let is_outermost = |&patch: &u32| around[patch as usize].is_empty();
-    (0..patches.count)
-        .map(|patch| {
-            let outermost = around[patch].iter().copied().find(is_outermost);
-            volumes[outermost.map_or(patch, |o| o as usize)] < 0.0
-                && (outermost.is_some() || around[patch].is_empty())
-        })
-        .collect()
+    let around: Vec<_> = (0..patches.count).into_par_iter().map(around).collect();
+    let mut from_outside: Vec<usize> = (0..patches.count).collect();
+    from_outside.sort_by_key(|&patch| around[patch].len());
+    let mut is_turned = vec![false; patches.count];
+    for patch in from_outside {
+        let outer = around[patch].iter().map(|&(outer, winding)| {
+            let is_turned = is_turned[outer as usize];
+            (outer as usize, if is_turned { -winding } else { winding })
+        });
+        let closest = outer.clone().max_by_key(|&(outer, _)| around[outer].len());
+        let with_closest = closest.is_some_and(|(outer, _)| is_turned[outer]);
+        let is_negative = if with_closest {
+            volumes[patch] > 0.0
+        } else {
+            volumes[patch] < 0.0
+        };
+        let solid: i32 = outer.map(|(_, winding)| winding).sum();
+        is_turned[patch] = with_closest != (is_negative && solid <= 0);
+    }
+    is_turned
 }
 
 /// Triangles that hang together by edges with two triangles.

@@ -8,7 +8,16 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::box_tree::BoxTree;
 use crate::Mesh;
-use crate::triangle::{distance, normal};
+use crate::triangle::{distance, normal, width};
+
+/// Up to what part of the diagonal of a mesh a gap is none.
+const GAP: f64 = 5e-5;
+
+/// How wide a gap of a mesh is that is none, in metres.
+pub(crate) fn gap(mesh: &Mesh) -> f64 {
+    let (low, high) = mesh.bounds();
+    GAP * low.distance(high)
+}
 
 /// What parts of a surface have to do with each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,20 +61,39 @@ fn shared(a: [u32; 3], b: [u32; 3]) -> impl Iterator<Item = (usize, usize)> {
     (0..3).flat_map(move |i| (0..3).filter_map(move |j| (a[i] == b[j]).then_some((i, j))))
 }
 
-/// Whether two triangles face each other with no more than `gap` between them, sharing no corner.
+/// Whether two triangles face each other with no more than `gap` metres between them; where they
+/// share corners or cross, all over one of them.
 fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
-    let triangles = [a, b].map(|t| mesh.triangles()[t as usize]);
-    if shared(triangles[0], triangles[1]).next().is_some() {
-        return false;
-    }
     let [p, q] = [a, b].map(|t| mesh.corners(t as usize));
-    let [n, m] = [p, q].map(normal);
-    if n.dot(m) > OPPOSITE || !overlap(p, q) {
+    // What is narrower than a gap faces nowhere.
+    let are_wide = || width(p) > gap && width(q) > gap;
+    if normal(p).dot(normal(q)) > OPPOSITE || !overlap(p, q) || !are_wide() {
         return false;
     }
-    // Parts may as well be a hair into each other.
     let distance = distance(p, q);
-    distance > 0.0 && distance <= gap
+    if distance > 0.0 {
+        return distance <= gap;
+    }
+    // They share a corner or cross: the two sides of a blade do, too, and parts far within each other.
+    let thickness = thickness_between(p, q);
+    thickness > 0.0 && thickness <= gap
+}
+
+/// Whether two triangles lie on each other, to within `gap` metres.
+pub(super) fn lie_on_each_other(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
+    let [p, q] = [a, b].map(|t| mesh.corners(t as usize));
+    overlap(p, q) && thickness_between(p, q) <= gap
+}
+
+/// How far one triangle reaches away from the plane of the other, in metres: of the two ways to
+/// see it the lesser.
+fn thickness_between(p: [DVec3; 3], q: [DVec3; 3]) -> f64 {
+    let reach = |plane: [DVec3; 3], of: [DVec3; 3]| {
+        let normal = normal(plane);
+        let heights = of.map(|v| (v - plane[0]).dot(normal).abs());
+        heights.into_iter().fold(0.0, f64::max)
+    };
+    reach(p, q).min(reach(q, p))
 }
 
 /// Whether two triangles cross, or lie on each other over some area.

@@ -13,15 +13,15 @@ use glamx::{DMat3, DVec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, WindingRule};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::box_tree::BoxTree;
+use super::fans::Fans;
 use super::orientation::Parts;
-use super::self_contact::SelfContact;
+use super::self_contact::{SelfContact, gap};
 use crate::Mesh;
+use crate::cells::Cells;
 use crate::triangle::{area, closest_point, normal};
-
-/// Up to what part of the diagonal of a mesh a gap is none.
-const GAP: f64 = 5e-5;
 
 /// The most a corner moves, in widths of what its faces move, as miters of strokes are limited.
 const MITER: f64 = 4.0;
@@ -68,11 +68,6 @@ pub(super) fn union(surface: &Mesh, layout: Layout) -> Result<Mesh, NoUnion> {
     outer_boundary(surface)
 }
 
-fn gap(mesh: &Mesh) -> f64 {
-    let (low, high) = mesh.bounds();
-    GAP * low.distance(high)
-}
-
 fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
     // Around the middle, so that coordinates have digits to spare.
     let (low, high) = surface.bounds();
@@ -114,14 +109,27 @@ fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
     Ok(boundary)
 }
 
-/// A mesh without those triangles of which two corners came to one place.
+/// A mesh without those triangles of which two corners came to one place, or all to those of another
+/// that turns the other way.
 fn without_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, NoUnion> {
     let new = |vertices: &[DVec3], triangles: &[[u32; 3]]| {
         Mesh::new(vertices, triangles).map_err(|_| NoUnion::Failed)
     };
     let mesh = new(vertices, triangles)?;
     let is_whole = |&&[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
-    let whole: Vec<_> = mesh.triangles().iter().filter(is_whole).copied().collect();
+    let mut whole: Vec<_> = mesh.triangles().iter().filter(is_whole).copied().collect();
+    let from_least = |t: &[u32; 3]| {
+        let least = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+        [0, 1, 2].map(|i| t[(least + i) % 3])
+    };
+    let mut there: FxHashMap<[u32; 3], usize> = FxHashMap::default();
+    for triangle in &whole {
+        *there.entry(from_least(triangle)).or_default() += 1;
+    }
+    whole.retain(|t| {
+        let [a, b, c] = from_least(t);
+        !there.contains_key(&[a, c, b])
+    });
     if whole.len() == mesh.triangles().len() {
         return Ok(mesh);
     }
@@ -163,20 +171,23 @@ impl Planes {
 /// What a plane weighs beside all planes of a vertex to count.
 const DAMPING: f64 = 1e-9;
 
-/// The surface with each face moved outwards: each vertex goes where the planes of its faces do.
+/// The surface with each face moved outwards: each corner of a body goes where the planes of its
+/// faces do.
 fn widened(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
-    let mut planes = vec![Planes::NONE; surface.vertices().len()];
-    for (t, corners) in surface.triangles().iter().enumerate() {
+    let fans = Fans::of(surface, 2.0 * by);
+    let mut planes = vec![Planes::NONE; fans.vertices.len()];
+    for (t, corners) in fans.of_triangles.iter().enumerate() {
         let at = surface.corners(t);
-        for &v in corners {
-            planes[v as usize].add(normal(at), by, area(at));
+        for &fan in corners {
+            planes[fan as usize].add(normal(at), by, area(at));
         }
     }
-    let vertices = surface.vertices().iter().zip(&planes);
-    let vertices: Vec<_> = vertices
-        .map(|(&v, planes)| v + planes.way().clamp_length_max(MITER * by))
-        .collect();
-    Mesh::new(&vertices, surface.triangles()).map_err(|_| NoUnion::Failed)
+    let vertices = fans.vertices.iter().zip(&planes);
+    let moved = |(&v, planes): (&u32, &Planes)| {
+        surface.vertices()[v as usize] + planes.way().clamp_length_max(MITER * by)
+    };
+    let vertices: Vec<_> = vertices.map(moved).collect();
+    Mesh::new(&vertices, &fans.of_triangles).map_err(|_| NoUnion::Failed)
 }
 
 /// A boundary made of faces of a widened surface, its vertices back on the planes of the same faces of
@@ -205,6 +216,19 @@ fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<
         corner.unwrap_or_else(|| p + planes.way().clamp_length_max(MITER * by))
     };
     let vertices: Vec<_> = boundary.vertices().par_iter().map(moved).collect();
+    // What came to one place but for rounding.
+    let mut cells = Cells::new(near, surface.bounds().0);
+    let mut kept: Vec<DVec3> = Vec::new();
+    let mut one = |&v: &DVec3| {
+        let same = cells.find_near(v, |i| kept[i].distance(v) <= near);
+        let same = same.map_or(v, |i| kept[i]);
+        if same == v {
+            cells.push(v);
+            kept.push(v);
+        }
+        same
+    };
+    let vertices: Vec<_> = vertices.iter().map(&mut one).collect();
     without_edges(&vertices, boundary.triangles())
 }
 

@@ -1,11 +1,12 @@
 //! Meshes that are no clean solids become what they mean.
 
 use crate::support::{bumpy_mesh, exact_penetration};
-use glamx::DVec3;
+use glamx::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use vps_build::{
     BuildError, BuildOptions, Built, Density, Mesh, PointCount, Repairs, Resolution, Sign, build,
 };
+use vps_core::DistanceField;
 
 fn options(sign: Sign) -> BuildOptions {
     BuildOptions {
@@ -212,6 +213,167 @@ fn faces_apart_and_turned_at_random_are_filled() {
         |p| (p.length() - 0.5).abs() < 0.005,
     )
     .unwrap();
+}
+
+/// A box from one corner to another, in an odd direction; its faces are cut along the other diagonal
+/// if `flipped`.
+fn askew_box(low: [f64; 3], high: [f64; 3], flipped: bool) -> Mesh {
+    let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.7, 1.1);
+    let (low, high) = (DVec3::from_array(low), DVec3::from_array(high));
+    let cuboid = Mesh::cuboid((high - low).to_array()).unwrap();
+    let vertices = cuboid.vertices().iter();
+    let vertices: Vec<_> = vertices.map(|&v| turn * (v + low.midpoint(high))).collect();
+    let quads = cuboid
+        .triangles()
+        .chunks_exact(2)
+        .map(|t| [t[0][0], t[0][1], t[0][2], t[1][2]]);
+    let triangles: Vec<_> = quads
+        .flat_map(|[a, b, c, d]| {
+            if flipped {
+                [[a, b, d], [b, c, d]]
+            } else {
+                [[a, b, c], [a, c, d]]
+            }
+        })
+        .collect();
+    Mesh::new(&vertices, &triangles).unwrap()
+}
+
+fn depth(built: &Built, place: [f64; 3]) -> f64 {
+    let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.7, 1.1);
+    let place = (turn * DVec3::from_array(place)).as_vec3();
+    f64::from(-built.asset.voxelmap.trilinear().signed_distance(place))
+}
+
+/// Boxes that share a face, or a part of it with corners of both, whichever way its two sides are cut:
+/// there is no wall between them.
+#[test]
+fn boxes_that_share_corners_have_no_wall_between_them() {
+    let first = askew_box([0.0; 3], [1.0; 3], false);
+    for (high, joint, right) in [
+        ([2.0, 1.0, 1.0], [1.0, 0.5, 0.5], 0.5),
+        ([2.0, 0.5, 1.0], [1.0, 0.25, 0.5], 0.25),
+        ([2.0, 0.5, 0.5], [1.0, 0.25, 0.25], 0.25),
+    ] {
+        for flipped in [false, true] {
+            let second = askew_box([1.0, 0.0, 0.0], high, flipped);
+            let both = built(&together(&first, &second), Sign::Auto);
+            let voxel = f64::from(both.asset.voxelmap.grid().voxel_size());
+            let found = depth(&both, joint);
+            assert!((found - right).abs() < voxel, "{high:?} {flipped}: {found}");
+            let volume = 1.0 + (high[0] - 1.0) * high[1] * high[2];
+            assert!((f64::from(both.asset.mass.volume) - volume).abs() < 1e-4 * volume);
+        }
+    }
+}
+
+/// Mirrored bodies are turned though others are open, share a face with them or lie around them.
+#[test]
+fn mirrored_bodies_are_turned_beside_open_ones() {
+    let volume = |mesh: &Mesh| f64::from(built(mesh, Sign::Auto).asset.mass.volume);
+    let unit = askew_box([0.0; 3], [1.0; 3], false);
+    for flipped in [false, true] {
+        let beside = turned(&askew_box([1.0, 0.0, 0.0], [2.0, 1.0, 1.0], flipped));
+        let both = together(&unit, &beside);
+        let both = volume(&both);
+        assert!((both - 2.0).abs() < 1e-3, "{flipped}: {both}");
+    }
+    let away = turned(&askew_box([3.0, 0.2, 0.2], [4.0, 0.8, 0.8], false));
+    let cavity = turned(&askew_box([0.25; 3], [0.75; 3], false));
+    let core = turned(&askew_box([0.4; 3], [0.6; 3], false));
+    for face in 0..6 {
+        let left = (0..12)
+            .filter(|t| t / 2 != face)
+            .map(|t| unit.triangles()[t]);
+        let open = Mesh::new(unit.vertices(), &left.collect::<Vec<_>>()).unwrap();
+        let both = volume(&together(&open, &away));
+        assert!((both - 1.36).abs() < 1e-3, "{face}: {both}");
+        let hollow = together(&open, &cavity);
+        assert!((volume(&hollow) - 0.875).abs() < 1e-3, "{face}");
+        assert!((volume(&turned(&hollow)) - 0.875).abs() < 1e-3, "{face}");
+        assert!(
+            (volume(&together(&hollow, &core)) - 0.883).abs() < 1e-3,
+            "{face}"
+        );
+    }
+}
+
+/// A facet without extent before the others says nothing, and closes nothing.
+#[test]
+fn a_collapsed_facet_may_stand_before_an_open_box() {
+    let unit = askew_box([0.0; 3], [1.0; 3], false);
+    let vertices = [&[DVec3::ZERO, DVec3::splat(0.5)], unit.vertices()].concat();
+    let box_ = unit.triangles()[1..].iter().map(|t| t.map(|v| v + 2));
+    let triangles: Vec<_> = [[0, 0, 1]].into_iter().chain(box_).collect();
+    let built = built(&Mesh::new(&vertices, &triangles).unwrap(), Sign::Auto);
+    assert!((built.asset.mass.volume - 1.0).abs() < 1e-5);
+}
+
+/// Neither does a surface with two sides at one place, however it is cut, nor an open one that is
+/// flat but for noise, wherever the voxels lie.
+#[test]
+fn what_has_no_inside_is_refused() {
+    let (outside, inside) = (
+        askew_box([0.0; 3], [1.0; 3], false),
+        askew_box([0.0; 3], [1.0; 3], true),
+    );
+    let both = together(&outside, &turned(&inside));
+    let error = build(&both, &options(Sign::Auto), &|_| ()).err();
+    assert!(matches!(error, Some(BuildError::NotSolid)), "{error:?}");
+    for (noise, turn) in [(1e-6, 0.0), (1e-4, 0.0), (1e-4, 0.3), (1e-2, 0.0)] {
+        let turn = DQuat::from_rotation_x(turn);
+        let n = 12;
+        let at = |i: u32, j: u32| {
+            let up = noise * f64::from((7 * i + 5 * j) % 3);
+            turn * DVec3::new(f64::from(i) / f64::from(n), f64::from(j) / f64::from(n), up)
+        };
+        let vertices: Vec<_> = (0..=n)
+            .flat_map(|i| (0..=n).map(move |j| at(i, j)))
+            .collect();
+        let cells = (0..n).flat_map(|i| (0..n).map(move |j| i * (n + 1) + j));
+        let triangles = cells.flat_map(|v| [[v, v + n + 1, v + 1], [v + 1, v + n + 1, v + n + 2]]);
+        let sheet = Mesh::new(&vertices, &triangles.collect::<Vec<_>>()).unwrap();
+        let error = build(&sheet, &options(Sign::Auto), &|_| ()).err();
+        let is_refused = matches!(error, Some(BuildError::NotSolid | BuildError::Sheet { .. }));
+        assert!(is_refused, "{noise}: {error:?}");
+    }
+}
+
+/// Parts joined across a gap leave no slivers that a point could have no place on, nor walls where there
+/// are none.
+#[test]
+fn parts_joined_across_rounding_have_points_and_no_thin_walls() {
+    let rounded = |mesh: Mesh| {
+        let vertices = mesh.vertices().iter().map(|&v| (v * 1e9).round() / 1e9);
+        Mesh::new(&vertices.collect::<Vec<_>>(), mesh.triangles()).unwrap()
+    };
+    let first = askew_box([0.0; 3], [1.0; 3], false);
+    let second = askew_box([1.0, 0.2, 0.2], [2.0, 0.5, 0.5], false);
+    let both = rounded(together(&first, &second));
+    for points in [200, 1000, 10_000] {
+        let options = BuildOptions {
+            points: PointCount::About(points),
+            ..options(Sign::Auto)
+        };
+        let built = build(&both, &options, &|_| ()).unwrap();
+        assert!(built.repairs.united);
+        assert!(built.thin_walls.lost_share < 1e-3, "{:?}", built.thin_walls);
+    }
+}
+
+#[test]
+fn the_union_of_many_triangles_is_refused_before_it_takes_the_memory() {
+    let ball = Mesh::icosphere(0.5, 5).unwrap();
+    let both = together(&ball, &moved(&ball, DVec3::X * 0.4));
+    let options = BuildOptions {
+        memory_limit: 16 << 20,
+        ..options(Sign::Auto)
+    };
+    let error = build(&both, &options, &|_| ()).err();
+    assert!(
+        matches!(error, Some(BuildError::UnionMemory { .. })),
+        "{error:?}"
+    );
 }
 
 #[test]
