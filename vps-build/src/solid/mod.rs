@@ -23,7 +23,7 @@ use vps_core::Grid;
 
 use self::orientation::{Parts, turn_by_neighbours};
 use self::union::{Layout, NoUnion, layout, union};
-use crate::edges::Edges;
+use crate::edges::{Edge, Edges};
 use crate::flat::bounds_a_sheet;
 use crate::places::{Place, Places};
 use crate::solid_angle::SolidAngle;
@@ -261,19 +261,10 @@ pub(crate) fn surface<'m>(
     grid: &Grid,
     repairs: &mut Repairs,
 ) -> Result<Cow<'m, Mesh>, BuildError> {
-    if sign != Sign::Fill {
-        let whole = once_each_way(mesh);
-        let removed = mesh.triangles().len() - whole.len();
-        let is_closed = !whole.is_empty() && Edges::of(&whole).open_count() == 0;
-        let kept = if removed == 0 {
-            Cow::Borrowed(mesh)
-        } else {
-            Cow::Owned(mesh.with_triangles(whole))
-        };
-        if is_closed && Parts::of(&kept).face_outwards() {
-            repairs.removed_faces = removed;
-            return Ok(kept);
-        }
+    if sign != Sign::Fill
+        && let Some(surface) = outward_bodies(mesh, sign, repairs)?
+    {
+        return Ok(surface);
     }
     let mut triangles = without_doubles(mesh);
     repairs.removed_faces = mesh.triangles().len() - triangles.len();
@@ -292,22 +283,77 @@ pub(crate) fn surface<'m>(
         let kept = mesh.with_triangles(triangles.clone());
         repairs.turned_faces = turn_by_neighbours(&kept, &mut triangles);
     }
-    let (holes, filling) = holes::fill(mesh.vertices(), &triangles);
-    let area = |triangles: &[[u32; 3]]| -> f64 {
-        let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices()[v as usize]);
-        triangles.iter().map(corners).map(triangle::area).sum()
-    };
-    repairs.left_open = match sign {
-        Sign::Winding => false,
-        Sign::Generalized => !filling.is_empty(),
-        Sign::Auto | Sign::Fill => area(&filling) > MOST_CLOSED * area(&triangles),
-    };
-    if !repairs.left_open {
-        repairs.closed_holes = holes;
-        repairs.added_faces = filling.len();
-        triangles.extend(filling);
+    let closing = Closing::of(mesh, &triangles, sign);
+    repairs.left_open = closing.is_too_large;
+    if !closing.is_too_large {
+        repairs.closed_holes = closing.holes;
+        repairs.added_faces = closing.filling.len();
+        triangles.extend(closing.filling);
     }
     Ok(Cow::Owned(Mesh::new(mesh.vertices(), &triangles)?))
+}
+
+/// The surface of bodies that face outwards and may have holes, if that is what the mesh is: faces that
+/// two of them share are there both ways.
+fn outward_bodies<'m>(
+    mesh: &'m Mesh,
+    sign: Sign,
+    repairs: &mut Repairs,
+) -> Result<Option<Cow<'m, Mesh>>, BuildError> {
+    let mut triangles = once_each_way(mesh);
+    let removed = mesh.triangles().len() - triangles.len();
+    let edges = Edges::of(&triangles);
+    let disagree = |uses: &[Edge]| matches!(uses, [a, b] if a.forward == b.forward);
+    if triangles.is_empty() || edges.groups().any(disagree) {
+        return Ok(None);
+    }
+    let closing = if edges.open_count() > 0 {
+        Closing::of(mesh, &triangles, sign)
+    } else {
+        Closing::default()
+    };
+    let surface = if removed == 0 && closing.filling.is_empty() {
+        Cow::Borrowed(mesh)
+    } else {
+        triangles.extend_from_slice(&closing.filling);
+        Cow::Owned(Mesh::new(mesh.vertices(), &triangles)?)
+    };
+    if closing.is_too_large || !Parts::of(&surface).face_outwards() {
+        return Ok(None);
+    }
+    repairs.removed_faces = removed;
+    repairs.closed_holes = closing.holes;
+    repairs.added_faces = closing.filling.len();
+    Ok(Some(surface))
+}
+
+/// What closes the holes of a surface.
+#[derive(Default)]
+struct Closing {
+    holes: usize,
+    filling: Vec<[u32; 3]>,
+    /// Whether the holes stay open instead.
+    is_too_large: bool,
+}
+
+impl Closing {
+    fn of(mesh: &Mesh, triangles: &[[u32; 3]], sign: Sign) -> Self {
+        let (holes, filling) = holes::fill(mesh.vertices(), triangles);
+        let area = |triangles: &[[u32; 3]]| -> f64 {
+            let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices()[v as usize]);
+            triangles.iter().map(corners).map(triangle::area).sum()
+        };
+        let is_too_large = match sign {
+            Sign::Winding => false,
+            Sign::Generalized => !filling.is_empty(),
+            Sign::Auto | Sign::Fill => area(&filling) > MOST_CLOSED * area(triangles),
+        };
+        Self {
+            holes,
+            filling,
+            is_too_large,
+        }
+    }
 }
 
 /// Above what share of its area the faces that close a mesh mean that it has no holes but cracks.
