@@ -338,7 +338,7 @@ impl Facet {
 
     /// The closest of its points, and whether that is one of an edge or a corner.
     fn closest(&self, point: Vec3, facet: usize) -> Closest {
-        let (on, closest) = closest_on(self.corners, point);
+        let (on, closest) = closest_on(self.corners, self.normal, point);
         let square = match on {
             On::Face => self.height(point).powi(2),
             _ => point.distance_squared(closest),
@@ -352,38 +352,31 @@ impl Facet {
     }
 }
 
-/// The closest point of a triangle (Ericson, Real-time collision detection, 5.1.5).
-fn closest_on([a, b, c]: [Vec3; 3], p: Vec3) -> (On, Vec3) {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return (On::Corner(0), a);
+/// The closest point of a triangle with a unit normal: right below, if that is within all edges, or
+/// else on an edge that it is beyond.
+fn closest_on(corners: [Vec3; 3], normal: Vec3, p: Vec3) -> (On, Vec3) {
+    let mut best = (On::Face, p - normal * (p - corners[0]).dot(normal));
+    let mut least = f32::INFINITY;
+    for i in 0..3 {
+        let (start, along) = (corners[i], corners[(i + 1) % 3] - corners[i]);
+        let to_point = p - start;
+        if along.cross(to_point).dot(normal) >= 0.0 {
+            continue;
+        }
+        let (ahead, length) = (to_point.dot(along), along.length_squared());
+        let found = if ahead <= 0.0 {
+            (On::Corner(i), start)
+        } else if ahead >= length {
+            (On::Corner((i + 1) % 3), corners[(i + 1) % 3])
+        } else {
+            (On::Edge(i), start + along * (ahead / length))
+        };
+        let square = p.distance_squared(found.1);
+        if square < least {
+            (best, least) = (found, square);
+        }
     }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return (On::Corner(1), b);
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc < 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (On::Edge(0), a + ab * (d1 / (d1 - d3)));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return (On::Corner(2), c);
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb < 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (On::Edge(2), a + ac * (d2 / (d2 - d6)));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va < 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return (On::Edge(1), b + (c - b) * t);
-    }
-    let scale = 1.0 / (va + vb + vc);
-    (On::Face, a + ab * (vb * scale) + ac * (vc * scale))
+    best
 }
 
 impl Node {
@@ -494,5 +487,35 @@ fn steepness(facets: &[Facet]) -> f32 {
         1.0 / least
     } else {
         f32::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::DVec3;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn vector() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-1.0..1.0_f32).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        /// As in double precision, of slivers, too.
+        #[test]
+        fn the_closest_point_of_a_triangle_is_closest(
+            a in vector(), b in vector(), third in vector(), p in vector(),
+            width in prop_oneof![Just(1.0_f32), Just(1e-2), Just(1e-4), Just(1e-6)],
+        ) {
+            let corners = [a, b, a.midpoint(b) + third * width];
+            let [u, v, w] = corners.map(Vec3::as_dvec3);
+            let normal = (v - u).cross(w - u);
+            prop_assume!(normal != DVec3::ZERO);
+            let right = vps_build::closest_point([u, v, w], p.as_dvec3());
+            let (_, found) = closest_on(corners, normal.normalize().as_vec3(), p);
+            let [right, told] = [right, found.as_dvec3()].map(|q| q.distance(p.as_dvec3()));
+            prop_assert!((right - told).abs() < 1e-5, "{right} {told}");
+        }
     }
 }
