@@ -1,5 +1,7 @@
 //! The triangles of a surface that are near a shape, and what they make of their edges.
 
+use std::collections::BTreeMap;
+
 use rapier3d::math::Vector;
 use rapier3d::parry::bounding_volume::Aabb as ParryAabb;
 use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags, Triangle, TypedShape};
@@ -95,13 +97,19 @@ impl<'s> Surface<'s> {
         let rounding = f32::EPSILON * bounds.min.abs().max(bounds.max.abs()).max_element();
         let around = ParryAabb::new(vector(bounds.min - rounding), vector(bounds.max + rounding));
         let mut found = Vec::new();
+        let mut flat = Vec::new();
         let mut add = |number, triangle: &Triangle, vertices| {
-            let normal = triangle.scaled_normal().try_normalize();
             let aabb = triangle.local_aabb();
             let overlaps = aabb.mins.cmple(around.maxs) & around.mins.cmple(aabb.maxs);
-            if let Some(normal) = normal.filter(|_| overlaps.all()) {
-                let corners = [triangle.a, triangle.b, triangle.c].map(core_vector);
-                found.push((Facet::new(number, corners, core_vector(normal)), vertices));
+            if !overlaps.all() {
+                return;
+            }
+            match triangle.scaled_normal().try_normalize() {
+                Some(normal) => {
+                    let corners = [triangle.a, triangle.b, triangle.c].map(core_vector);
+                    found.push((Facet::new(number, corners, core_vector(normal)), vertices));
+                }
+                None => flat.push((number, vertices)),
             }
         };
         match self.shape.as_typed_shape() {
@@ -123,7 +131,8 @@ impl<'s> Surface<'s> {
         }
         found.sort_unstable_by_key(|(facet, _)| facet.number);
         let (mut facets, vertices): (Vec<Facet>, Vec<_>) = found.into_iter().unzip();
-        join(&mut facets, &vertices);
+        flat.sort_unstable();
+        join(&mut facets, &vertices, &flat);
         facets
     }
 }
@@ -170,36 +179,56 @@ impl Facet {
     }
 }
 
-/// Finds out how facets meet, by the places of their vertices.
-fn join(facets: &mut [Facet], places: &[[Place; 3]]) {
+/// An edge by its two ends, the lesser first.
+type Ends = (Place, Place);
+
+fn ends(vertices: &[Place; 3], edge: usize) -> Ends {
+    let (from, to) = (vertices[edge], vertices[(edge + 1) % 3]);
+    (from.min(to), from.max(to))
+}
+
+/// Finds out how facets meet, by the places of their vertices. Triangles without an area, numbered,
+/// are no facets, but those at their edges meet.
+fn join(facets: &mut [Facet], places: &[[Place; 3]], flat: &[(u32, [Place; 3])]) {
+    let mut same: BTreeMap<Ends, Ends> = BTreeMap::new();
+    for (_, vertices) in flat {
+        let edges = [0, 1, 2].map(|e| ends(vertices, e));
+        let edges = edges.map(|e| same.get(&e).copied().unwrap_or(e));
+        let first = edges[0].min(edges[1]).min(edges[2]);
+        for known in same.values_mut().filter(|known| edges.contains(known)) {
+            *known = first;
+        }
+        same.extend(edges.map(|e| (e, first)));
+    }
+    let meeting = |e: Ends| same.get(&e).copied().unwrap_or(e);
     let corners = (0..facets.len()).flat_map(|f| [0, 1, 2].map(|c| (places[f][c], f, c)));
     let mut corners: Vec<_> = corners.collect();
     corners.sort_unstable();
     let edges = (0..facets.len()).flat_map(|f| {
         [0, 1, 2].map(|e| {
-            let (from, to) = (places[f][e], places[f][(e + 1) % 3]);
-            (from.min(to), from.max(to), f, e)
+            let ends = ends(&places[f], e);
+            (meeting(ends), f, e, ends)
         })
     });
     let mut edges: Vec<_> = edges.collect();
     edges.sort_unstable();
-    for group in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let normals = group.iter().map(|&(_, _, f, _)| (facets[f].normal, 1.0));
+    for group in edges.chunk_by(|a, b| a.0 == b.0) {
+        let normals = group.iter().map(|&(_, f, ..)| (facets[f].normal, 1.0));
         let mut seam = seam(normals);
         seam.is_border = group.len() == 1;
-        let widths = group.iter().map(|&(_, _, f, _)| facets[f].width());
+        let widths = group.iter().map(|&(_, f, ..)| facets[f].width());
         seam.width = widths.fold(f32::INFINITY, f32::min);
-        seam.is_hollow = group.iter().any(|&(_, _, f, e)| {
+        seam.is_hollow = group.iter().any(|&(_, f, e, _)| {
             let facet = &facets[f];
-            group.iter().any(|&(_, _, other, of_other)| {
+            group.iter().any(|&(_, other, of_other, _)| {
                 let opposite = facets[other].corners[(of_other + 2) % 3];
                 // Of its own corners rounding alone says where they are.
                 other != f && (opposite - facet.corners[e]).dot(facet.normal) > 0.0
             })
         });
-        for (i, &(_, _, f, e)) in group.iter().enumerate() {
+        for (i, &(_, f, e, ends)) in group.iter().enumerate() {
             facets[f].edges[e] = seam;
-            facets[f].is_shared[e] = i > 0;
+            facets[f].is_shared[e] = group[..i].iter().any(|before| before.3 == ends);
         }
     }
     for group in corners.chunk_by(|a, b| a.0 == b.0) {

@@ -4,10 +4,12 @@
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
 
 use proptest::prelude::*;
+use vps_build::Mesh;
 use vps_core::{Aabb, DistanceField, Vec3, conformance};
-use vps_rapier::ShapeField;
+use vps_rapier::rapier3d::parry::query::PersistentQueryDispatcher;
 use vps_rapier::rapier3d::parry::utils::Array2;
 use vps_rapier::rapier3d::prelude::*;
+use vps_rapier::{ShapeField, VpsDispatcher, VpsShapeBuilder};
 
 const THICKNESS: f32 = 0.08;
 
@@ -149,4 +151,32 @@ fn beyond_the_border_of_a_sheet_there_is_nothing() {
     assert!((depth(1.02, -0.02) + 0.02_f32.hypot(0.02)).abs() < 1e-6);
     assert!((depth(0.3, -0.1) + 0.1).abs() < 1e-6);
     assert!((depth(0.3, 0.1) + 0.1).abs() < 1e-6);
+}
+
+/// A triangle without an area closes the ground where a corner lies on an edge of its neighbour: there is
+/// no border.
+#[test]
+fn triangles_without_an_area_leave_no_border() {
+    let corners = [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0], [0.2, 0.0]];
+    let corners: Vec<_> = corners.map(|[x, z]| Vector::new(x, 0.0, z)).into();
+    let ground = vec![[0, 1, 2], [0, 3, 4], [4, 3, 1], [0, 4, 1]];
+    let block = VpsShapeBuilder::new(Mesh::cuboid([0.1; 3]).unwrap());
+    let block = block.build().unwrap();
+    for (triangles, has_border) in [(ground.clone(), false), (ground[..3].to_vec(), true)] {
+        let ground = SharedShape::trimesh(corners.clone(), triangles).unwrap();
+        let mut steepest: Real = 1.0;
+        for i in 0..20 {
+            // The seam is just ahead of a face of the block.
+            let at = Pose::translation(0.1, 0.049, 0.0499 - 1e-5 * i as Real);
+            let mut manifolds: Vec<ContactManifold> = Vec::new();
+            let dispatcher = VpsDispatcher::default();
+            dispatcher
+                .contact_manifolds(&at, &*ground, &block, 0.001, &mut manifolds, &mut None)
+                .unwrap();
+            assert!(!manifolds.is_empty());
+            let normals = manifolds.iter().map(|m| m.local_n1.y);
+            steepest = normals.fold(steepest, Real::min);
+        }
+        assert_eq!(steepest < 0.99, has_border, "{steepest}");
+    }
 }
