@@ -323,11 +323,19 @@ impl Edges {
         radius: f32,
         visit: &mut impl FnMut(Tip),
     ) {
-        let facets = Surface::of(shape).map(|s| s.facets_in(&self.local_bounds(radius)));
-        for facet in facets.unwrap_or_default() {
+        let Some(surface) = Surface::of(shape) else {
+            return;
+        };
+        // Of what lies in the solid as a whole no point of the shell is near.
+        let narrowest = if self.around.may_hold(&surface.bounds(), &self.pose) {
+            f32::INFINITY
+        } else {
+            self.narrowest
+        };
+        for facet in surface.facets_in(&self.local_bounds(radius)) {
             for (number, seam) in (0_u8..).zip(&facet.edges) {
                 let i = usize::from(number);
-                if facet.is_shared[i] || !seam.stands_out(self.bluntest, self.narrowest) {
+                if facet.is_shared[i] || !seam.stands_out(self.bluntest, narrowest) {
                     continue;
                 }
                 let ends = [facet.corners[i], facet.corners[(i + 1) % 3]];

@@ -135,6 +135,20 @@ fn shapes_of_parry_within_are_found_and_hold_what_is_within_them() {
     for (name, shape) in &small {
         check(name, &block, &**shape, &pos12, 0.26);
     }
+    // Smooth and large beside the distance of the points.
+    let fine = vps(&cube(1.0), 10_000);
+    let (vertices, indices) = triangles(&Mesh::icosphere(0.3, 2).unwrap());
+    let smooth = mesh_of(&vertices, &indices);
+    let at = Vector::new(0.05, 0.1, -0.1);
+    let depth = |v: &Vector| 0.5 - f64::from((*v + at).abs().max_element());
+    let deepest = vertices.iter().map(depth).fold(0.0, f64::max);
+    check(
+        "a large mesh",
+        &fine,
+        &*smooth,
+        &Pose::from_translation(at),
+        deepest,
+    );
     let inner = vps(&ball, 1000);
     let (vertices, indices) = triangles(&cube(1.0));
     let large = [
