@@ -11,6 +11,7 @@ use rapier3d::pipeline::{CollisionPipeline, PhysicsWorld};
 use serde::{Deserialize, Serialize};
 use vps_core::{Asset, encode};
 
+use crate::check::quietly;
 use crate::{Role, ShapeError, VpsDispatcher, VpsShape};
 
 /// A whole world with VPS shapes, for serde to write and to read.
@@ -229,16 +230,18 @@ fn exchange(
             unmarked.push(handle);
         }
     }
-    CollisionPipeline::new().step(
-        0.0,
-        &mut IslandManager::new(),
-        &mut BroadPhaseBvh::default(),
-        &mut NarrowPhase::new(),
-        &mut bodies.clone(),
-        &mut copy,
-        &(),
-        &(),
-    );
+    quietly(|| {
+        CollisionPipeline::new().step(
+            0.0,
+            &mut IslandManager::new(),
+            &mut BroadPhaseBvh::default(),
+            &mut NarrowPhase::new(),
+            &mut bodies.clone(),
+            &mut copy,
+            &(),
+            &(),
+        );
+    });
     for handle in unmarked {
         if let (Some(collider), Some(exchanged)) = (colliders.get_mut(handle), copy.get(handle)) {
             *collider = exchanged.clone();

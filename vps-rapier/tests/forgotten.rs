@@ -7,8 +7,9 @@ use std::sync::Mutex;
 
 use support::asset;
 use vps_build::Mesh;
+use vps_rapier::rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use vps_rapier::rapier3d::prelude::*;
-use vps_rapier::{NoDispatcher, VpsShape, check, narrow_phase};
+use vps_rapier::{NoDispatcher, VpsDispatcher, VpsShape, check, narrow_phase};
 
 /// Keeps what is logged.
 struct Log(Mutex<Vec<String>>);
@@ -55,6 +56,11 @@ fn a_world_without_our_dispatcher_is_found_out() {
     let said = logged();
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("vps_rapier::narrow_phase()"), "{said:?}");
+    // So is ours behind parry's, which finds nothing for meshes and says that is all there is.
+    let behind = DefaultQueryDispatcher.chain(VpsDispatcher::default());
+    world.narrow_phase = NarrowPhase::with_query_dispatcher(behind);
+    let error = check(&world.narrow_phase, &world.colliders).unwrap_err();
+    assert_eq!(error, NoDispatcher(first));
     // Part of a compound alone is enough.
     let mut world = PhysicsWorld::default();
     let (_, second) = world.insert(above, ColliderBuilder::new(compound));
