@@ -2,6 +2,7 @@
 //! question a line.
 
 use std::io::{BufRead, Write};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use rapier3d::math::{Pose, Rotation, Vector};
@@ -49,6 +50,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Works until there are no more questions.
 pub(super) fn work(name: Name, args: &Args) -> Result<(), Error> {
+    let questions = questions();
     let (ground, body) = setting::meshes(args)?;
     say(&Ready)?;
     let start = Instant::now();
@@ -58,11 +60,23 @@ pub(super) fn work(name: Name, args: &Args) -> Result<(), Error> {
     let Ok(prepared) = prepared else {
         return Ok(());
     };
-    for line in std::io::stdin().lock().lines() {
-        let question: Question = serde_json::from_str(&line?)?;
+    for line in questions {
+        let question: Question = serde_json::from_str(&line)?;
         say(&guarded(|| ask(&prepared, &question, args.repeat)))?;
     }
     Ok(())
+}
+
+/// The lines of standard input. Where that ends, so does this process, whatever it is at: the one that
+/// asks has ended, and nobody keeps to limits.
+fn questions() -> Receiver<String> {
+    let (sender, lines) = channel();
+    std::thread::spawn(move || {
+        let mut input = std::io::stdin().lock().lines().map_while(Result::ok);
+        while input.next().is_some_and(|line| sender.send(line).is_ok()) {}
+        std::process::exit(0);
+    });
+    lines
 }
 
 fn say(answer: &impl Serialize) -> Result<(), Error> {
