@@ -29,8 +29,8 @@ pub type AssetSource<'s> = dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'sta
 pub enum VpsGround {
     /// A voxelmap, as in the paper; the body is the shell.
     Voxelmap(BuildOptions),
-    /// An asset with a role like the body: with [`Role::Mixed`] the one with fewer points is the
-    /// shell, as in section 3.2, with [`Role::Both`] either is.
+    /// An asset with a role like the body: with [`Role::Mixed`] the one with closer points is the
+    /// shell, with [`Role::Both`] either is.
     Asset(BuildOptions, Role),
     /// The box itself.
     Cuboid,

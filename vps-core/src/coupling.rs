@@ -179,8 +179,8 @@ pub enum StepError {
 ///
 /// # Stability
 /// Springs, dampers and contacts are integrated implicitly, contacts by their [`LinearWrench`]
-/// (Otaduy and Lin 2006). The quadratic potential of contacts with a convex solid touches the true
-/// one where the tool is, and is nowhere below it. As long as the device rests, contacts are as their
+/// (Otaduy and Lin 2006). The quadratic potential of the points in contact with a convex solid touches
+/// the true one where the tool is, and is nowhere below it. As long as the device rests, contacts are as their
 /// wrench says and turns of a step are small, a step adds no energy, whatever mass, stiffness and time
 /// step are. Contacts that are stiffer along some axis are stable up to 4 m / dt² and twice the
 /// stiffness it says together; so a bare [`Wrench`], which says nothing, is good for 4 m / dt² (a tool

@@ -176,7 +176,7 @@ impl BuildArgs {
                 SignName::Generalized => Sign::Generalized,
                 SignName::Fill => Sign::Fill,
             },
-            memory_limit: self.memory_limit << 20,
+            memory_limit: self.memory_limit.saturating_mul(1 << 20),
         }
     }
 }

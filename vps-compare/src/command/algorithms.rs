@@ -26,7 +26,7 @@ pub(super) fn prepare(
         resolution: Resolution::VoxelsAlongLongest(args.voxels),
         points: PointCount::About(args.points),
         sign: args.sign.into(),
-        memory_limit: args.memory_limit << 20,
+        memory_limit: args.memory_limit.saturating_mul(1 << 20),
         ..BuildOptions::default()
     };
     let assets = |mesh: &Mesh, options: &BuildOptions| {

@@ -112,8 +112,8 @@ impl From<SignName> for Sign {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(super) enum Name {
-    /// The pointshell with fewer points in the voxelmap of the other, and the other way round if
-    /// the other is thin
+    /// The pointshell whose points are closer to each other in the voxelmap of the other, and the other
+    /// way round if the other is thin
     Vps,
     /// Each pointshell in the voxelmap of the other
     VpsBoth,
