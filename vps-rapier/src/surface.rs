@@ -109,7 +109,7 @@ impl<'s> Surface<'s> {
                     let corners = [triangle.a, triangle.b, triangle.c].map(core_vector);
                     found.push((Facet::new(number, corners, core_vector(normal)), vertices));
                 }
-                None => flat.push((number, vertices)),
+                None => flat.push(vertices),
             }
         };
         match self.shape.as_typed_shape() {
@@ -131,7 +131,6 @@ impl<'s> Surface<'s> {
         }
         found.sort_unstable_by_key(|(facet, _)| facet.number);
         let (mut facets, vertices): (Vec<Facet>, Vec<_>) = found.into_iter().unzip();
-        flat.sort_unstable();
         join(&mut facets, &vertices, &flat);
         facets
     }
@@ -187,11 +186,11 @@ fn ends(vertices: &[Place; 3], edge: usize) -> Ends {
     (from.min(to), from.max(to))
 }
 
-/// Finds out how facets meet, by the places of their vertices. Triangles without an area, numbered,
+/// Finds out how facets meet, by the places of their vertices. Triangles without an area, in any order,
 /// are no facets, but those at their edges meet.
-fn join(facets: &mut [Facet], places: &[[Place; 3]], flat: &[(u32, [Place; 3])]) {
+fn join(facets: &mut [Facet], places: &[[Place; 3]], flat: &[[Place; 3]]) {
     let mut same: BTreeMap<Ends, Ends> = BTreeMap::new();
-    for (_, vertices) in flat {
+    for vertices in flat {
         let edges = [0, 1, 2].map(|e| ends(vertices, e));
         let edges = edges.map(|e| same.get(&e).copied().unwrap_or(e));
         let first = edges[0].min(edges[1]).min(edges[2]);
