@@ -2,7 +2,7 @@
 
 use glamx::DVec3;
 
-use crate::triangle::{area, normal, signed_volume};
+use crate::triangle::{area, normal};
 use crate::{BuildError, Mesh};
 
 /// How thick a sheet is at most, as a part of its longest side: what numbers of six digits may be
@@ -35,9 +35,7 @@ pub(crate) fn refuse_sheet(mesh: &Mesh) -> Result<(), BuildError> {
 /// Whether what a closed mesh bounds is on the average no thicker than a sheet.
 pub(crate) fn bounds_a_sheet(mesh: &Mesh) -> bool {
     let (low, high) = mesh.bounds();
-    let corners = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
-    let volume: f64 = corners.map(|t| signed_volume(t, low)).sum();
-    2.0 * volume <= THICKNESS * (high - low).max_element() * mesh.area()
+    2.0 * mesh.volume() <= THICKNESS * (high - low).max_element() * mesh.area()
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use crate::Mesh;
 use crate::bvh::Bvh;
 use crate::edges::Edges;
 use crate::thin_walls::ThinWalls;
-use crate::triangle::signed_volume;
 
 /// A health report of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +79,6 @@ impl Health {
         }
         let used = triangles.iter().flatten().copied();
         let (low, high) = mesh.bounds();
-        let volume = |t: usize| signed_volume(mesh.corners(t), low);
         Self {
             vertices: mesh.vertices().len(),
             triangles: triangles.len(),
@@ -92,7 +90,7 @@ impl Health {
             duplicate_faces,
             degenerate_faces,
             area_m2: mesh.area(),
-            volume_m3: (0..triangles.len()).map(volume).sum(),
+            volume_m3: mesh.volume(),
             extents_m: (high - low).to_array(),
             thin_share: ThinWalls::sampled(mesh, &Bvh::new(mesh), 0.0..voxel_size).share,
         }

@@ -283,6 +283,15 @@ impl Mesh {
         let triangles = 0..self.triangles.len();
         triangles.map(|t| triangle::area(self.corners(t))).sum()
     }
+
+    /// The volume a closed mesh bounds in m³, negative if its triangles face inwards.
+    pub(crate) fn volume(&self) -> f64 {
+        let (low, _) = self.bounds();
+        let triangles = 0..self.triangles.len();
+        triangles
+            .map(|t| triangle::signed_volume(self.corners(t), low))
+            .sum()
+    }
 }
 
 #[cfg(test)]

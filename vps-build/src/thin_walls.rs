@@ -125,10 +125,10 @@ fn wall(mesh: &Mesh, bvh: &Bvh, point: DVec3, thin: &Range<f64>) -> Option<Wall>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::triangle::area;
+    use crate::triangle::{area, middle};
 
     fn of(mesh: &Mesh, voxel_size: f64) -> ThinWalls {
-        let middle = |t: usize| mesh.corners(t).iter().sum::<DVec3>() / 3.0;
+        let middle = |t: usize| middle(mesh.corners(t));
         let area = |t: usize| area(mesh.corners(t));
         let count = mesh.triangles().len();
         let points: Vec<_> = (0..count).map(|t| (middle(t), area(t))).collect();

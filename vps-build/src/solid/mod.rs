@@ -27,7 +27,7 @@ use crate::edges::{Edge, Edges};
 use crate::flat::bounds_a_sheet;
 use crate::places::{Place, Places};
 use crate::solid_angle::SolidAngle;
-use crate::triangle::{self, normal};
+use crate::triangle::{self, middle, normal};
 use crate::winding::Lines;
 use crate::{BuildError, Mesh};
 
@@ -171,9 +171,7 @@ fn with_sheets(boundary: Mesh, surface: &Mesh, grid: &Grid) -> Result<Mesh, Buil
     for t in sheets {
         let [a, b, c] = surface.triangles()[t].map(|v| v + first);
         for side in [[a, b, c], [a, c, b]] {
-            let least = side.iter().min().copied().unwrap_or_default();
-            let turns = side.iter().position(|&v| v == least).unwrap_or_default();
-            if seen.insert([0, 1, 2].map(|i| side[(turns + i) % 3])) {
+            if seen.insert(from_least(side)) {
                 triangles.push(side);
             }
         }
@@ -184,8 +182,7 @@ fn with_sheets(boundary: Mesh, surface: &Mesh, grid: &Grid) -> Result<Mesh, Buil
 /// Points in front of and behind a face.
 fn sides(mesh: &Mesh, face: usize, offset: f64) -> [DVec3; 2] {
     let corners = mesh.corners(face);
-    let middle = corners.iter().sum::<DVec3>() / 3.0;
-    let way = normal(corners) * offset;
+    let (middle, way) = (middle(corners), normal(corners) * offset);
     [middle + way, middle - way]
 }
 
@@ -359,14 +356,23 @@ impl Closing {
 /// Above what share of its area the faces that close a mesh mean that it has no holes but cracks.
 const MOST_CLOSED: f64 = 0.5;
 
+/// Whether no two corners of a triangle are one.
+fn has_three_corners(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// The triangle, turning the same way, from its least corner on: the same whichever came first.
+fn from_least([a, b, c]: [u32; 3]) -> [u32; 3] {
+    [[a, b, c], [b, c, a], [c, a, b]]
+        .into_iter()
+        .fold([a, b, c], Ord::min)
+}
+
 /// All triangles with three corners, each once each way it turns. Where bodies share a face it is
 /// there both ways.
 fn once_each_way(mesh: &Mesh) -> Vec<[u32; 3]> {
     let mut seen = FxHashSet::default();
-    let mut is_new = |&&[a, b, c]: &&[u32; 3]| {
-        let turns = [[a, b, c], [b, c, a], [c, a, b]];
-        a != b && b != c && c != a && seen.insert(turns.into_iter().min())
-    };
+    let mut is_new = |t: &&[u32; 3]| has_three_corners(t) && seen.insert(from_least(**t));
     mesh.triangles()
         .iter()
         .filter(&mut is_new)
@@ -380,7 +386,7 @@ fn without_doubles(mesh: &Mesh) -> Vec<[u32; 3]> {
     let mut is_new = |triangle: &&[u32; 3]| {
         let mut corners = **triangle;
         corners.sort_unstable();
-        corners[0] != corners[1] && corners[1] != corners[2] && seen.insert(corners)
+        has_three_corners(triangle) && seen.insert(corners)
     };
     mesh.triangles()
         .iter()
@@ -402,8 +408,7 @@ fn turn_by_fill(mesh: &Mesh, grid: &Grid, triangles: &mut Vec<[u32; 3]>) -> usiz
     triangles.retain_mut(|triangle| {
         let corners = mesh.corners(t);
         t += 1;
-        let middle = corners.iter().sum::<DVec3>() / 3.0;
-        let normal = normal(corners);
+        let (middle, normal) = (middle(corners), normal(corners));
         let is_outside = |direction: DVec3| {
             let steps = 1..=2 * SIDE_REACH;
             let mut ahead =

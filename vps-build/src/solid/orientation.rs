@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use glamx::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -12,7 +11,7 @@ use super::self_contact::gap;
 use crate::Mesh;
 use crate::edges::Edges;
 use crate::health::UnionFind;
-use crate::triangle::{area, signed_volume};
+use crate::triangle::{area, middle, signed_volume};
 use crate::winding::Lines;
 
 /// The bodies that a closed surface bounds.
@@ -74,9 +73,9 @@ impl Parts {
         }
         let lines = Lines::new(mesh);
         (0..).zip(&self.volumes).all(|(part, &volume)| {
-            let [a, b, c] = mesh.corners(self.largest[part as usize] as usize);
+            let largest = mesh.corners(self.largest[part as usize] as usize);
             let others = |t: u32| self.part_of[t as usize] != part;
-            let around = lines.winding((a + b + c) / 3.0, others);
+            let around = lines.winding(middle(largest), others);
             around == i32::from(volume < 0.0)
         })
     }
@@ -146,7 +145,7 @@ fn inside_out(mesh: &Mesh, patches: &Patches, triangles: &[[u32; 3]]) -> Vec<boo
         for triangle in bodies[patch].iter().map(corners) {
             let area = area(triangle);
             all += area;
-            lines.for_each_crossing(triangle.iter().sum::<DVec3>() / 3.0, |t, change| {
+            lines.for_each_crossing(middle(triangle), |t, change| {
                 *windings.entry(owners[t as usize]).or_default() += area * f64::from(change);
             });
         }

@@ -13,12 +13,13 @@ use glamx::{DMat3, DVec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, WindingRule};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHashSet;
 
 use super::box_tree::BoxTree;
 use super::fans::Fans;
 use super::orientation::Parts;
 use super::self_contact::{SelfContact, gap};
+use super::{from_least, has_three_corners};
 use crate::Mesh;
 use crate::cells::Cells;
 use crate::triangle::{area, closest_point, normal};
@@ -116,20 +117,10 @@ fn without_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, NoU
         Mesh::new(vertices, triangles).map_err(|_| NoUnion::Failed)
     };
     let mesh = new(vertices, triangles)?;
-    let is_whole = |&&[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
-    let mut whole: Vec<_> = mesh.triangles().iter().filter(is_whole).copied().collect();
-    let from_least = |t: &[u32; 3]| {
-        let least = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
-        [0, 1, 2].map(|i| t[(least + i) % 3])
-    };
-    let mut there: FxHashMap<[u32; 3], usize> = FxHashMap::default();
-    for triangle in &whole {
-        *there.entry(from_least(triangle)).or_default() += 1;
-    }
-    whole.retain(|t| {
-        let [a, b, c] = from_least(t);
-        !there.contains_key(&[a, c, b])
-    });
+    let mut whole = mesh.triangles().to_vec();
+    whole.retain(has_three_corners);
+    let there: FxHashSet<_> = whole.iter().map(|&t| from_least(t)).collect();
+    whole.retain(|&[a, b, c]| !there.contains(&from_least([a, c, b])));
     if whole.len() == mesh.triangles().len() {
         return Ok(mesh);
     }
@@ -220,13 +211,12 @@ fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<
     let mut cells = Cells::new(near, surface.bounds().0);
     let mut kept: Vec<DVec3> = Vec::new();
     let mut one = |&v: &DVec3| {
-        let same = cells.find_near(v, |i| kept[i].distance(v) <= near);
-        let same = same.map_or(v, |i| kept[i]);
-        if same == v {
-            cells.push(v);
-            kept.push(v);
+        if let Some(same) = cells.find_near(v, |i| kept[i].distance(v) <= near) {
+            return kept[same];
         }
-        same
+        cells.push(v);
+        kept.push(v);
+        v
     };
     let vertices: Vec<_> = vertices.iter().map(&mut one).collect();
     without_edges(&vertices, boundary.triangles())
@@ -235,7 +225,6 @@ fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::triangle::signed_volume;
 
     fn together(meshes: &[Mesh]) -> Mesh {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
@@ -260,11 +249,6 @@ mod tests {
         Mesh::new(&vertices, mesh.triangles()).unwrap()
     }
 
-    fn volume(mesh: &Mesh) -> f64 {
-        let of = |t: usize| signed_volume(mesh.corners(t), DVec3::ZERO);
-        (0..mesh.triangles().len()).map(of).sum()
-    }
-
     /// Boxes through, on and beside each other: the volume is that of all together, and the area has
     /// no inner walls.
     #[test]
@@ -287,7 +271,7 @@ mod tests {
                 assert_ne!(found, Layout::Simple, "{i}");
                 let united = union(&parts, found).unwrap();
                 assert_ne!(layout(&united), Layout::WithGaps, "{i} {turn}");
-                let (v, a) = (volume(&united), united.area());
+                let (v, a) = (united.volume(), united.area());
                 assert!((v - expected_volume).abs() < 1e-8, "{i} {turn}: {v}");
                 assert!((a - expected_area).abs() < 1e-3, "{i} {turn}: {a}");
             }
@@ -301,7 +285,7 @@ mod tests {
     fn a_surface_moves_as_its_faces_do() {
         let box_ = turned(&cuboid([0.0; 3], [1.0, 2.0, 3.0]));
         let moved = widened(&box_, 0.1).unwrap();
-        assert!((volume(&moved) - 1.2 * 2.2 * 3.2).abs() < 1e-6);
+        assert!((moved.volume() - 1.2 * 2.2 * 3.2).abs() < 1e-6);
         let ball = Mesh::icosphere(1.0, 4).unwrap();
         let wide = widened(&ball, 1e-3).unwrap();
         let back = put_back(&wide, &wide, &ball, 1e-3).unwrap();
