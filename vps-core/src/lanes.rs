@@ -227,6 +227,32 @@ impl Vectors {
         }
     }
 
+    /// Masks of the coordinates that are less than those of another vector.
+    #[inline(always)]
+    pub(crate) fn is_less(self, than: Self) -> Self {
+        Self {
+            x: self.x.simd_lt(than.x),
+            y: self.y.simd_lt(than.y),
+            z: self.z.simd_lt(than.z),
+        }
+    }
+
+    /// With these as masks, the lanes of which any coordinate is chosen.
+    #[inline(always)]
+    pub(crate) fn any(self) -> f32x4 {
+        self.x | self.y | self.z
+    }
+
+    /// With these as masks, what lanes of `yes` and `no` they choose, coordinate by coordinate.
+    #[inline(always)]
+    pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+        Self {
+            x: self.x.select(yes.x, no.x),
+            y: self.y.select(yes.y, no.y),
+            z: self.z.select(yes.z, no.z),
+        }
+    }
+
     /// Each coordinate, which must not be negative, with the sign of that of another vector.
     #[inline(always)]
     pub(crate) fn with_signs_of(self, other: Self) -> Self {

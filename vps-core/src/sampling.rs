@@ -4,7 +4,7 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::lanes::{Vectors, Voxels};
-use crate::outside::{Beyond, direction_beyond, penetration_beyond};
+use crate::outside::{Beyond, Border, Tangent, direction_beyond, penetration_beyond};
 use crate::{Aabb, Accuracy, Discs, DistanceField, Grid, LANES, Points, Voxelmap};
 
 /// Half the diagonal of a voxel, in voxels.
@@ -304,7 +304,12 @@ impl Trilinear<'_> {
     /// Penetrations at the points.
     #[inline(always)]
     fn penetrations_at(&self, points: Vectors) -> f32x4 {
-        let sampled = self.sampled(points);
+        self.beyond(&self.sampled(points))
+    }
+
+    /// Penetrations at the points something was interpolated for, in the grid and beyond.
+    #[inline(always)]
+    fn beyond(&self, sampled: &Sampled) -> f32x4 {
         let is_outside = sampled.way.dot(sampled.way).simd_gt(f32x4::ZERO);
         if is_outside.any() {
             let beyond = Beyond::new(sampled.inside, sampled.way, &self.0.solid());
@@ -328,8 +333,8 @@ impl Trilinear<'_> {
     /// straight way from the centre to a point r voxels away, the slope changes at each face
     /// between voxels by no more than the bend, and there are no more than r / s + 1 of them along
     /// an axis; between faces it changes by the twist of the squares. Together the point has no
-    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends. That is
-    /// for discs that do not leave the grid.
+    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends. How that
+    /// goes on outside of the grid, [`Border`] tells.
     ///
     /// The third is for what lies outside of the grid. There what is sampled is no more than at the
     /// closest point of the grid, so the first holds; see [`Beyond::bounds`] for how it falls. And as
@@ -347,14 +352,24 @@ impl Trilinear<'_> {
         let voxels = radii * map.grid().per_metre();
         let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
         let gradients = sampled.gradients;
-        let steepest = gradients.length();
-        let bent = at_center
-            + discs.rise(gradients, steepest)
-            + (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
-        let leaves = centers.room_in(&map.grid().center_bounds()).simd_lt(radii);
-        let is_in_grid = !leaves.any();
+        let excess = (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
+        let grid = map.grid().center_bounds();
+        let is_in_grid = centers.room_in(&grid).simd_ge(radii).all();
+        let (bent, is_bent_known, at_point) = if is_in_grid {
+            let bent = at_center + discs.rise(gradients, gradients.length()) + excess;
+            (bent, is_near, at_center)
+        } else {
+            let tangent = Tangent {
+                value: at_center,
+                gradient: gradients,
+                excess,
+            };
+            let border = Border::new(discs, sampled.inside, &grid, &map.solid());
+            let bent = border.bounds(discs, &tangent);
+            (bent, is_near & border.is_simple(), self.beyond(&sampled))
+        };
         // The other bounds are no smaller then.
-        if is_in_grid && (is_near & bent.simd_le(at_center + radii)).all() {
+        if (is_bent_known & bent.simd_le(at_point + radii)).all() {
             return bent;
         }
 
@@ -364,10 +379,10 @@ impl Trilinear<'_> {
         let bound = Stored::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
         let error = bound.error_at(at_center);
         let by_way = bound.of(at_center + way + chance * error, chance);
+        let out = is_bent_known.select(bent.fast_min(by_way), by_way);
         if is_in_grid {
-            return is_near.select(bent.fast_min(by_way), by_way);
+            return out;
         }
-        let out = (is_near & !leaves).select(bent.fast_min(by_way), by_way);
         let beyond = Beyond::new(sampled.inside, sampled.way, &map.solid());
         let is_outside = beyond.is_outside();
         if !is_outside.any() {

@@ -3,7 +3,7 @@
 use crate::support::{
     asset, asset_of, bumpy_mesh, cases, density, direction, encoding, exact_penetration, vector,
 };
-use glamx::DVec3;
+use glamx::{BVec3, DVec3};
 use proptest::prelude::*;
 use vps_build::{
     BuildOptions, ClosestPoints, Clustering, Density, Encoding, Mesh, PointCount, Resolution, build,
@@ -168,6 +168,37 @@ proptest! {
             let aside = Quat::from_axis_angle(normal, turn) * along;
             check(&field, center, radius, aside, normal).unwrap();
             check(&field, center, radius, rising, normal).unwrap();
+        }
+    }
+
+    /// Pieces that leave the grid, or straddle its border, along any axes: of what is bumpy, and of a
+    /// plate, whose field goes on flat.
+    #[test]
+    fn discs_across_the_border_are_bounded(
+        mesh in prop_oneof![bumpy_mesh(), Just(Mesh::cuboid([1.0, 0.2, 0.7]).unwrap())],
+        encoding in encoding(), density in density(),
+        discs in prop::collection::vec(
+            (vector(1.0), vector(1.0), 0..8_u8, 0.0..7.0_f32, direction(), any::<bool>(), 0.0..6.3_f32),
+            200),
+    ) {
+        let asset = asset_of(&mesh, 10, encoding, density);
+        let map = &asset.voxelmap;
+        let (field, s) = (map.trilinear(), map.grid().voxel_size());
+        let bounds = map.grid().bounds();
+        let middle = (bounds.min + bounds.max) * 0.5;
+        for (at, off, on_border, radius, normal, is_level, turn) in discs {
+            let on_border = BVec3::new(on_border & 1 > 0, on_border & 2 > 0, on_border & 4 > 0);
+            let way = Vec3::select(on_border, at.signum(), at) * (bounds.max - middle);
+            let center = middle + way + off * (8.0 * s);
+            let rising = field.inward_direction(center);
+            // Straight at what lies ahead, or tilted any way.
+            let normal = if is_level { rising.normalize_or(Vec3::Y) } else { normal };
+            let along = (rising - normal * rising.dot(normal)).normalize_or(normal.any_orthonormal_vector());
+            let aside = Quat::from_axis_angle(normal, turn) * along;
+            let radius = radius * s;
+            for inside in [along, rising, aside, aside * 0.5, (aside + rising).normalize_or(Vec3::Y)] {
+                check(&field, center, radius, inside, normal).unwrap();
+            }
         }
     }
 
