@@ -72,6 +72,10 @@ query-report: fetch
 query-profile: fetch
     cargo run --locked --release --quiet -p vps-compare --example query_profile
 
+# Fail if queries take other instructions than reports/queries/profile.csv says, by more than 2 % (needs valgrind)
+gate: fetch
+    cargo run --locked --release --quiet -p vps-compare --example query_profile -- gate
+
 # The 1 kHz loop for 10 seconds in two scenes, into reports/haptics; with real-time priority by `just haptics 10 "chrt -f 50"`
 haptics seconds="10" with="": fetch
     cargo build --locked --release -p vps-compare --example haptic_loop
