@@ -119,20 +119,18 @@ pub(crate) struct Tangent {
 
 /// The border of a grid where pieces are.
 ///
-/// A piece is bounded by linear functions that hold for all its points that leave the grid along the
-/// same axes. In the grid that is the one given. Outside, the vector z of d(c) and of w + g is as
-/// long as √(V² + |g|²), and no shorter than e·z for any unit vector e: e is taken along z where the
-/// piece comes closest, for an e taken along the z of its centre. Of points that leave along an axis
-/// on which others do not, no more is used than that |V| ≥ d(c).
+/// In the grid a piece is bounded by a linear function. Outside, that holds for the closest points of
+/// the grid; and along an axis along which the whole ball around the piece leaves the grid, each
+/// point of it is as far out as the centre less the radius, at least.
 #[derive(Clone, Copy)]
 pub(crate) struct Border {
     /// From the closest points of the grid to the centres: zero along axes that do not leave it.
     way: Vectors,
-    /// From the closest point of the border to the centre along each axis, inside as well.
-    from_border: Vectors,
-    /// From the box of the solid to the border there.
-    gap: Vectors,
-    /// Axes along which all points of a piece leave the grid.
+    /// From the closest points of the grid to those of the border, if the centre were on it.
+    to_border: Vectors,
+    /// The least that w·(w + 2 g) is in the balls.
+    further: f32x4,
+    /// Axes along which all points of a ball leave the grid.
     leave: Vectors,
     /// Axes along which some may.
     straddle: Vectors,
@@ -147,16 +145,18 @@ impl Border {
         let from_high = centers.minus(Vectors::splat(grid.max));
         let is_low = from_low.abs().is_less(from_high.abs());
         let from_border = is_low.select(from_low, from_high);
-        let border = centers.minus(from_border);
         let way = centers.minus(inside);
-        let is_out = NONE.is_less(way.abs());
         let (x, y, z) = (radii, radii, radii);
-        let straddle = from_border.abs().is_less(Vectors { x, y, z });
+        let radii = Vectors { x, y, z };
+        let straddle = from_border.abs().is_less(radii);
+        let leave = straddle.select(NONE, NONE.is_less(way.abs()));
+        let least = leave.select(way.abs().minus(radii), NONE);
+        let gap = inside.minus(inside.clamped(solid)).abs();
         Self {
             way,
-            from_border,
-            gap: border.minus(border.clamped(solid)),
-            leave: straddle.select(NONE, is_out),
+            to_border: way.minus(from_border),
+            further: least.dot(least.plus(gap).plus(gap)),
+            leave,
             straddle,
         }
     }
@@ -184,43 +184,18 @@ impl Border {
     #[inline(always)]
     fn bounds_of(&self, discs: &Discs, tangent: &Tangent, beside: Vectors) -> f32x4 {
         // Where the closest point of the grid is that belongs to the centre then.
-        let to_border = self.way.minus(self.from_border);
-        let shift = beside.select(to_border, self.leave.select(to_border, self.way));
-        let value = tangent.value + tangent.gradient.dot(shift);
-        let gradient = beside.select(NONE, self.leave.select(NONE, tangent.gradient));
+        let shift = beside.select(self.to_border, self.leave.select(NONE, self.way));
+        let slope = beside.select(NONE, self.leave.select(NONE, tangent.gradient));
+        let at_grid = tangent.value
+            + tangent.gradient.dot(shift)
+            + discs.rise(slope, slope.length())
+            + tangent.excess;
         let leaves = self.leave.any();
         if !leaves.any() {
-            return value + discs.rise(gradient, gradient.length()) + tangent.excess;
+            return at_grid;
         }
-        let gap = self.leave.select(self.gap, NONE);
-        let out = self.leave.select(self.from_border.plus(self.gap), NONE);
-        let along = |distance: f32x4, out: Vectors| {
-            let depth = distance.fast_max(f32x4::ZERO);
-            let length = (depth * depth + out.dot(out)).sqrt();
-            let shorter = length.simd_gt(f32x4::ZERO) & (f32x4::ONE / length);
-            (
-                leaves.select(depth * shorter, f32x4::ONE),
-                out.times(shorter),
-            )
-        };
-        let rise = |(of_distance, of_out): (f32x4, Vectors)| {
-            let slope = gradient.times(of_distance).minus(of_out);
-            let steepest = slope.length();
-            (slope, steepest, discs.rise(slope, steepest))
-        };
-        let (slope, steepest, rises) = rise(along(-value, out));
-        let step = slope.times(steepest.simd_gt(f32x4::ZERO) & (rises / (steepest * steepest)));
-        let closest = along(
-            -value - gradient.dot(step),
-            self.leave.select(out.plus(step), NONE),
-        );
-        let (of_distance, of_out) = closest;
-        let (_, _, rises) = rise(closest);
-        let least = of_out.dot(out) - of_distance * (value + tangent.excess) - rises;
-        let gap = gap.length();
-        // By factors: the difference of squares would be lost to rounding.
-        let square = (least - gap).fast_max(f32x4::ZERO) * (least + gap).fast_max(f32x4::ZERO);
-        -leaves.select(square.sqrt(), least)
+        let depth = at_grid.fast_min(f32x4::ZERO);
+        leaves.select(-(depth * depth + self.further).sqrt(), at_grid)
     }
 }
 

@@ -355,22 +355,26 @@ impl Trilinear<'_> {
         let excess = (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
         let grid = map.grid().center_bounds();
         let is_in_grid = centers.room_in(&grid).simd_ge(radii).all();
-        let (bent, is_bent_known, at_point) = if is_in_grid {
-            let bent = at_center + discs.rise(gradients, gradients.length()) + excess;
-            (bent, is_near, at_center)
-        } else {
+        let mut bent = f32x4::splat(f32::INFINITY);
+        if is_in_grid {
+            let risen = at_center + discs.rise(gradients, gradients.length()) + excess;
+            bent = is_near.select(risen, bent);
+            // The other bounds are no smaller then.
+            if bent.simd_le(at_center + radii).all() {
+                return bent;
+            }
+        } else if is_near.any() {
             let tangent = Tangent {
                 value: at_center,
                 gradient: gradients,
                 excess,
             };
             let border = Border::new(discs, sampled.inside, &grid, &map.solid());
-            let bent = border.bounds(discs, &tangent);
-            (bent, is_near & border.is_simple(), self.beyond(&sampled))
-        };
-        // The other bounds are no smaller then.
-        if (is_bent_known & bent.simd_le(at_point + radii)).all() {
-            return bent;
+            let is_known = is_near & border.is_simple();
+            bent = is_known.select(border.bounds(discs, &tangent), bent);
+            if bent.simd_le(self.beyond(&sampled) + radii).all() {
+                return bent;
+            }
         }
 
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
@@ -379,7 +383,7 @@ impl Trilinear<'_> {
         let bound = Stored::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
         let error = bound.error_at(at_center);
         let by_way = bound.of(at_center + way + chance * error, chance);
-        let out = is_bent_known.select(bent.fast_min(by_way), by_way);
+        let out = bent.fast_min(by_way);
         if is_in_grid {
             return out;
         }
