@@ -1,3 +1,5 @@
+//! Axis-aligned boxes.
+
 use glamx::{Mat3, Pose3, Vec3};
 
 /// An axis-aligned box, its corners in metres in the frame of whatever it bounds.

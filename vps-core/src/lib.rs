@@ -75,64 +75,37 @@ struct Readme;
 
 mod aabb;
 mod asset;
-mod body_pair;
-pub mod conformance;
-mod coupling;
-mod dispatch;
 mod field;
-pub mod format;
-mod function;
-mod grid;
-mod include;
-mod lanes;
-mod linear_wrench;
-mod manifold;
-mod outside;
+mod force;
+mod map;
 mod query;
-mod sampling;
-#[cfg(feature = "alloc")]
-mod scale;
-mod search;
-mod segments;
-mod shapes;
+mod shell;
+mod simd;
 mod storage;
-pub mod store;
-#[cfg(feature = "alloc")]
-mod surface_mesh;
-mod sweep;
-mod time_critical;
-mod tree;
-mod voxelmap;
-mod work;
-mod wrench;
 
 pub use aabb::Aabb;
-pub use asset::{Asset, MassProperties};
-pub use body_pair::{Body, BodyPair, PairContact, Shells, Side};
-pub use coupling::{CouplingError, CouplingOptions, StepError, Tool, VirtualCoupling};
-pub use field::DistanceField;
 #[cfg(feature = "alloc")]
-pub use format::encode;
-pub use format::{FormatError, VPS_VERSION};
-pub use function::FieldFn;
+pub use asset::ScaleError;
+#[cfg(feature = "alloc")]
+pub use asset::format::encode;
+pub use asset::format::{self, FormatError, VPS_VERSION};
+pub use asset::{Aligned, Asset, MassProperties};
+pub use field::{
+    Ball, Capsule, Cuboid, Cylinder, Discs, DistanceField, FieldFn, HalfSpace, Linear,
+    LocalPenetration, Trilinear, conformance,
+};
+pub use force::{
+    CouplingError, CouplingOptions, LinearWrench, StepError, Tool, VirtualCoupling, Weight, Wrench,
+};
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
-pub use grid::{Grid, GridError};
-pub use include::Aligned;
-pub use lanes::{Discs, LANES, Points};
-pub use linear_wrench::LinearWrench;
-pub use manifold::ContactManifold;
-pub use query::{Contact, Query};
-pub use sampling::{Linear, LocalPenetration, Trilinear};
 #[cfg(feature = "alloc")]
-pub use scale::ScaleError;
-pub use shapes::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
+pub use map::SurfaceMesh;
+pub use map::store::{self, Store, Values};
+pub use map::{Accuracy, BEND_STEPS, Grid, GridError, UNKNOWN_BEND, Voxelmap, VoxelmapError};
+pub use query::{
+    Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact, Query,
+    Shells, Side, Sweep, Work,
+};
+pub use shell::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
+pub use simd::{LANES, Points};
 pub use storage::Storage;
-pub use store::{Store, Values};
-#[cfg(feature = "alloc")]
-pub use surface_mesh::SurfaceMesh;
-pub use sweep::{Impact, Sweep};
-pub use time_critical::Estimate;
-pub use tree::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
-pub use voxelmap::{Accuracy, BEND_STEPS, UNKNOWN_BEND, Voxelmap, VoxelmapError};
-pub use work::{CountWork, Work};
-pub use wrench::{Weight, Wrench};

@@ -1,3 +1,5 @@
+//! Slices that are borrowed or owned.
+
 use core::ops::Deref;
 
 /// A slice that is borrowed (from a file in memory, from flash) or, with `alloc`, owned.

@@ -1,0 +1,175 @@
+//! What any [`DistanceField`] must satisfy, for the tests of those who implement one.
+
+use glamx::Vec3;
+
+use crate::aabb::Aabb;
+use crate::field::discs::Discs;
+use crate::field::distance_field::DistanceField;
+use crate::simd::{LANES, Points};
+
+/// A promise of [`DistanceField`] that was broken.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Violation {
+    /// The bound of a ball or disc is below the penetration of a point in it.
+    #[error(
+        "the {piece} around {center} of radius {radius} m has bound {bound} m, but {point} in it has {penetration} m"
+    )]
+    Bound {
+        /// Ball or disc.
+        piece: &'static str,
+        /// Its centre.
+        center: Vec3,
+        /// Its radius in metres.
+        radius: f32,
+        /// The bound.
+        bound: f32,
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        penetration: f32,
+    },
+    /// A disc has a higher bound than the ball around it.
+    #[error("the disc around {center} has bound {disc} m, the ball {ball} m")]
+    Disc {
+        /// Its centre.
+        center: Vec3,
+        /// Its bound.
+        disc: f32,
+        /// That of the ball.
+        ball: f32,
+    },
+    /// Several points at a time have other penetrations than one by one.
+    #[error("{point} has penetration {alone} m alone, but {together} m with others")]
+    Lanes {
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        alone: f32,
+        /// As one of several.
+        together: f32,
+    },
+    /// A point in the solid lies outside of its bounds.
+    #[error("{point} is {penetration} m inside, but out of bounds {bounds:?}")]
+    Bounds {
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        penetration: f32,
+        /// What should hold it.
+        bounds: Aabb,
+    },
+    /// A gradient is not finite.
+    #[error("the gradient at {point} is {gradient}")]
+    Gradient {
+        /// The point.
+        point: Vec3,
+        /// The gradient.
+        gradient: Vec3,
+    },
+    /// The inward direction is not of length one (or zero).
+    #[error("the inward direction at {point} has length {length}")]
+    Direction {
+        /// The point.
+        point: Vec3,
+        /// Length of the direction.
+        length: f32,
+    },
+}
+
+/// Checks the promises for a ball, a disc and a point in both: `inside` lies in the unit ball and
+/// is scaled to the ball around `center`; the disc lies across the unit vector `normal`, which is
+/// also that of the point, and is flat or bent one way or the other, and as thick as the point needs
+/// it to be.
+///
+/// # Errors
+/// The first promise that is broken.
+pub fn check(
+    field: &impl DistanceField,
+    center: Vec3,
+    radius: f32,
+    inside: Vec3,
+    normal: Vec3,
+) -> Result<(), Violation> {
+    let point = center + inside * radius;
+    let penetration = field.penetration(point, normal);
+    let rounding = 16.0 * f32::EPSILON * (center.length() + radius);
+    let radius = radius + rounding;
+    let ball = field.penetration_bound(center, radius);
+    let height = (point - center).dot(normal);
+    let square = (point - center - normal * height).length_squared();
+    let mut discs = Discs {
+        centers: Points::splat(center),
+        radii: [radius; LANES],
+        normals: Points::splat(normal),
+        lifts: [0.0; LANES],
+        bulges: [0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius],
+        thickness: [0.0; LANES],
+    };
+    for lane in 0..LANES {
+        let above = height - discs.bulges[lane] * square;
+        // The flat one stays at the centre. Others are lifted half of the way to the point and are
+        // as thick as the other half; the last is lifted right to it.
+        discs.lifts[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
+        discs.thickness[lane] = (above - discs.lifts[lane]).abs() + rounding;
+    }
+    let bounds = field.penetration_bounds(&discs);
+    let pieces = [
+        ("ball", ball),
+        ("disc", bounds[0]),
+        ("bowl", bounds[1]),
+        ("dome", bounds[2]),
+        ("deep bowl", bounds[3]),
+    ];
+    for (piece, bound) in pieces {
+        if penetration > bound {
+            return Err(Violation::Bound {
+                piece,
+                center,
+                radius,
+                bound,
+                point,
+                penetration,
+            });
+        }
+    }
+    for disc in bounds {
+        if disc > ball + rounding {
+            return Err(Violation::Disc { center, disc, ball });
+        }
+    }
+    let mut points = Points::splat(center);
+    points.set(1, point);
+    let together = field.penetrations(&points, &Points::splat(normal))[1];
+    if together.to_bits() != penetration.to_bits() {
+        return Err(Violation::Lanes {
+            point,
+            alone: penetration,
+            together,
+        });
+    }
+    let (together, gradients) = field.penetrations_and_gradients(&points, &Points::splat(normal));
+    if together[1].to_bits() != penetration.to_bits() {
+        return Err(Violation::Lanes {
+            point,
+            alone: penetration,
+            together: together[1],
+        });
+    }
+    let gradient = gradients.get(1);
+    if !gradient.is_finite() {
+        return Err(Violation::Gradient { point, gradient });
+    }
+    let bounds = field.bounds();
+    if penetration > field.error_bound() && bounds.distance_outside(point) > rounding {
+        return Err(Violation::Bounds {
+            point,
+            penetration,
+            bounds,
+        });
+    }
+    let length = field.inward_direction(point).length();
+    if length != 0.0 && (length - 1.0).abs() > 1e-4 {
+        return Err(Violation::Direction { point, length });
+    }
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! Counts of what a query looks at.
+
+use core::cell::Cell;
+
+/// What a query had to look at, for those who ask: see
+/// [`Query::counting`](crate::Query::counting).
+#[derive(Debug, Default)]
+pub struct Work {
+    spheres: Cell<u64>,
+    points: Cell<u64>,
+}
+
+impl Work {
+    /// Clusters whose ball was held against the field.
+    pub fn spheres(&self) -> u64 {
+        self.spheres.get()
+    }
+
+    /// Points whose penetration was computed.
+    pub fn points(&self) -> u64 {
+        self.points.get()
+    }
+}
+
+/// Who counts what a query looks at: a [`Work`], or `()`, which counts nothing and costs nothing.
+pub trait CountWork {
+    /// So many more spheres.
+    fn spheres(&self, _count: u32) {}
+    /// So many more points.
+    fn points(&self, _count: u32) {}
+}
+
+impl CountWork for () {}
+
+impl CountWork for &Work {
+    fn spheres(&self, count: u32) {
+        self.spheres.set(self.spheres.get() + u64::from(count));
+    }
+
+    fn points(&self, count: u32) {
+        self.points.set(self.points.get() + u64::from(count));
+    }
+}
