@@ -38,11 +38,11 @@ impl Aabb {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
-    /// Whether a body may lie within this box, given the smallest box around it in its own frame;
-    /// `to_this` takes coordinates of that frame to those of this box.
+    /// Whether a body may lie within this box, given the smallest box around it in its own frame; `to_this`
+    /// transforms coordinates of that frame to those of this box.
     ///
-    /// Never false for one that does: it reaches all six sides of its box, and so at least as far along
-    /// any direction as the whole of the side that reaches furthest.
+    /// Never false for a body that does lie within: it touches all six faces of its box, so along any
+    /// direction it extends at least as far as the nearest corner of the furthest face.
     pub fn may_hold(&self, body: &Self, to_this: &Pose3) -> bool {
         let half = body.extents() * 0.5;
         let center = to_this.transform_point(body.center());
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_in_a_box_may() {
+    fn bodies_within_a_box_are_never_refused() {
         let bounds = Aabb {
             min: Vec3::new(-1.0, -2.0, -0.5),
             max: Vec3::new(1.0, 1.0, 0.5),

@@ -61,9 +61,10 @@ use crate::shell::{Cluster, PointSphereTree, TreeError};
 pub const VPS_VERSION: u64 = 5;
 
 const MAGIC: [u8; 8] = *b"VPSASSET";
-const ALIGN: usize = 64;
-/// Where the bytes may start: at a multiple of this.
-const ADDRESS: usize = 8;
+/// Sections start at a multiple of this.
+const SECTION_ALIGN: usize = 64;
+/// The address of the bytes must be a multiple of this.
+const ADDRESS_ALIGN: usize = 8;
 
 /// The first 64 bytes.
 #[repr(C)]
@@ -82,10 +83,10 @@ struct Header {
     level_starts: u16,
 }
 
-/// From where on bytes are checked.
-const CHECKED: usize = 24;
+/// Start of the bytes that the checksum covers.
+const CHECKSUM_START: usize = 24;
 
-/// All of an asset that has a fixed size.
+/// The part of an asset that has a fixed size.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Parameters {
@@ -106,13 +107,13 @@ struct Parameters {
 /// Why bytes are not an [`Asset`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FormatError {
-    /// Another kind of file.
+    /// The file is of another kind.
     #[error("not a .vps file")]
     Foreign,
-    /// A file of another version of this library.
+    /// The file is of another version of the format.
     #[error("a .vps file of version {0}, but this library reads {VPS_VERSION}: build it again")]
     Version(u64),
-    /// The file ends before its data, or goes on behind it.
+    /// The file is shorter or longer than its header states.
     #[error("the file has {found} bytes, but its header speaks of {expected}")]
     Length {
         /// Bytes the header asks for.
@@ -120,7 +121,7 @@ pub enum FormatError {
         /// Bytes there are.
         found: u64,
     },
-    /// The bytes were changed after they were written.
+    /// The bytes are damaged.
     #[error("the checksum does not match: the file is damaged")]
     Checksum,
     /// The bytes do not start at a multiple of 8.
@@ -129,31 +130,31 @@ pub enum FormatError {
          puts those of a file there, `vps_core::Aligned` is a buffer there"
     )]
     Alignment,
-    /// Values of a size that does not exist.
+    /// The size of values is invalid.
     #[error("in the voxelmap: values of {0} bytes")]
     ValueBytes(u16),
-    /// The frame of the asset lies nowhere.
+    /// The origin of the asset is not finite.
     #[error("the origin of the asset is not finite: {0:?}")]
     Origin([f64; 3]),
-    /// The grid is none.
+    /// The grid is invalid.
     #[error("in the voxelmap: {0}")]
     Grid(#[from] GridError),
-    /// The voxelmap is none.
+    /// The voxelmap is invalid.
     #[error("in the voxelmap: {0}")]
     Voxelmap(#[from] VoxelmapError),
-    /// The tree is none.
+    /// The tree is invalid.
     #[error("in the point-sphere tree: {0}")]
     Tree(#[from] TreeError),
 }
 
-/// Where the sections of a file lie.
-struct Layout {
+/// The positions of the sections of a file.
+struct SectionLayout {
     starts: [usize; 10],
     end: usize,
 }
 
-impl Layout {
-    /// `None` when the sizes do not fit an address.
+impl SectionLayout {
+    /// `None` if the sizes exceed the address space.
     fn of(header: &Header) -> Option<Self> {
         let size = |count: u64, of: usize| {
             let count = usize::try_from(count).ok()?;
@@ -174,7 +175,7 @@ impl Layout {
         let mut starts = [0; 10];
         let mut end = size_of::<Header>();
         for (start, size) in starts.iter_mut().zip(sizes) {
-            *start = end.checked_next_multiple_of(ALIGN)?;
+            *start = end.checked_next_multiple_of(SECTION_ALIGN)?;
             end = start.checked_add(size)?;
         }
         Some(Self { starts, end })
@@ -184,13 +185,12 @@ impl Layout {
 impl<'a> Asset<'a> {
     /// Reads the bytes of a `.vps` file in place: nothing is copied.
     ///
-    /// They must lie at an address that is a multiple of 8. [`include_asset!`](crate::include_asset)
-    /// puts those of a file there, which `include_bytes!` does not; [`Aligned`](crate::Aligned) is a
-    /// buffer there. Costs one pass over the bytes for the checksum and one over the points a level
-    /// of the tree.
+    /// Their address must be a multiple of 8. [`include_asset!`](crate::include_asset) aligns the bytes of
+    /// a file, which `include_bytes!` does not; [`Aligned`](crate::Aligned) is an aligned buffer. Costs
+    /// one pass over the bytes for the checksum and one over the points for each level of the tree.
     ///
     /// # Errors
-    /// When the bytes are not a sound asset of this version, or lie elsewhere.
+    /// When the bytes are not a valid asset of this version, or not aligned.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let start = bytes
             .get(..size_of::<Header>())
@@ -202,19 +202,19 @@ impl<'a> Asset<'a> {
         if header.version != VPS_VERSION {
             return Err(FormatError::Version(header.version));
         }
-        // Whatever is in the file, so that it is found out at once.
-        if !bytes.as_ptr().addr().is_multiple_of(ADDRESS) {
+        // Independent of the contents, so that a wrong alignment fails with every file.
+        if !bytes.as_ptr().addr().is_multiple_of(ADDRESS_ALIGN) {
             return Err(FormatError::Alignment);
         }
         let wrong_length = |expected: usize| FormatError::Length {
             expected: expected as u64,
             found: bytes.len() as u64,
         };
-        let layout = Layout::of(&header).ok_or(wrong_length(usize::MAX))?;
+        let layout = SectionLayout::of(&header).ok_or(wrong_length(usize::MAX))?;
         if bytes.len() != layout.end {
             return Err(wrong_length(layout.end));
         }
-        if xxh3_64(&bytes[CHECKED..]) != header.checksum {
+        if xxh3_64(&bytes[CHECKSUM_START..]) != header.checksum {
             return Err(FormatError::Checksum);
         }
         fn cast<T: Pod>(bytes: &[u8], start: usize, count: usize) -> Result<&[T], FormatError> {
@@ -281,7 +281,7 @@ impl<'a> Asset<'a> {
     }
 }
 
-/// The bytes of a `.vps` file.
+/// Writes an asset as the bytes of a `.vps` file.
 #[cfg(feature = "alloc")]
 pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
     use bytemuck::{bytes_of, cast_slice};
@@ -334,11 +334,11 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
     ];
     let mut bytes = alloc::vec![0; size_of::<Header>()];
     for section in sections {
-        bytes.resize(bytes.len().next_multiple_of(ALIGN), 0);
+        bytes.resize(bytes.len().next_multiple_of(SECTION_ALIGN), 0);
         bytes.extend_from_slice(section);
     }
     bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
-    header.checksum = xxh3_64(&bytes[CHECKED..]);
+    header.checksum = xxh3_64(&bytes[CHECKSUM_START..]);
     bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
     bytes
 }

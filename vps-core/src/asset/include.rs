@@ -1,8 +1,8 @@
-//! Bytes of a file at an aligned address.
+//! Aligned bytes, for assets in constant memory.
 
 /// Bytes at an address that is a multiple of 64, where
-/// [`Asset::from_bytes`](crate::Asset::from_bytes) can read them in place: what
-/// [`include_asset!`](crate::include_asset) puts a file into, or a buffer to receive one in.
+/// [`Asset::from_bytes`](crate::Asset::from_bytes) can read them in place: a buffer to receive a file
+/// in, or the static that [`include_asset!`](crate::include_asset) puts a file into.
 ///
 /// ```
 /// use vps_core::{Aligned, Asset, FormatError};
@@ -37,7 +37,7 @@ macro_rules! include_asset {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn bytes_that_are_included_are_those_of_the_file_and_aligned() {
+    fn included_bytes_equal_the_file_and_are_aligned() {
         static FILES: [&[u8]; 2] = [include_asset!("include.rs"), include_asset!("../lib.rs")];
         let expected: [&[u8]; 2] = [include_bytes!("include.rs"), include_bytes!("../lib.rs")];
         for (bytes, expected) in FILES.into_iter().zip(expected) {

@@ -1,4 +1,4 @@
-//! Assets: all that is made of one mesh, its bytes, and a copy of another size.
+//! Assets: the data made from one mesh, their file format, and scaled copies.
 
 pub mod format;
 mod include;
@@ -13,12 +13,12 @@ pub use self::scale::ScaleError;
 use crate::map::Voxelmap;
 use crate::shell::PointSphereTree;
 
-/// All that is made from one mesh before it collides (section 2.1): its voxelmap, its pointshell
-/// in a point-sphere tree, and its mass properties, all in one frame, that of the asset.
+/// The data made from one mesh before collision queries (section 2.1): its voxelmap, its pointshell in a
+/// point-sphere tree, and its mass properties, all in the frame of the asset.
 #[derive(Clone, Debug)]
 pub struct Asset<'a> {
-    /// Where the origin of the asset's frame lies in the coordinates of the mesh it was built from,
-    /// in metres; the axes are the same. A point p of the mesh is at p - `origin` in the asset.
+    /// The origin of the asset's frame in the coordinates of the mesh it was built from, in metres; the
+    /// axes are the same. A point p of the mesh is at p - `origin` in the asset.
     ///
     /// It is zero unless the mesh lies so far from its own origin that 32-bit coordinates would be
     /// off by a thousandth of a voxel. A body whose pose places the mesh in the world places the

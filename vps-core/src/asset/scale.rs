@@ -1,4 +1,4 @@
-//! The same solid in another size.
+//! Uniformly scaled copies of an asset.
 
 use alloc::vec::Vec;
 
@@ -11,26 +11,26 @@ use crate::shell::{Cluster, PointSphereTree, TreeError};
 /// Why an asset cannot be scaled.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ScaleError {
-    /// Mirrors and points are no scales.
+    /// The factor is not positive and finite.
     #[error("the scale must be positive and finite, not {0}")]
     Factor(f32),
-    /// Voxels would be too small or too large for 32 bits.
+    /// The voxel size would exceed the range of 32-bit numbers.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// So would be what they hold.
+    /// The values would.
     #[error(transparent)]
     Voxelmap(#[from] VoxelmapError),
-    /// So would be the points.
+    /// The points would.
     #[error(transparent)]
     Tree(#[from] TreeError),
 }
 
 impl Asset<'_> {
-    /// The same solid, larger by a factor in all directions about the origin of the mesh. Copies all
-    /// data; a solid stretched along one axis needs distances of its own, and is to be built.
+    /// The solid scaled uniformly about the origin of the mesh. Copies all data. A solid scaled along a
+    /// single axis has other distances, and must be built from its mesh.
     ///
     /// # Errors
-    /// When the factor is not positive, or leads out of what 32 bits can hold.
+    /// When the factor is not positive, or leads out of the range of 32-bit numbers.
     pub fn scaled(&self, factor: f32) -> Result<Asset<'static>, ScaleError> {
         if !(factor > 0.0 && factor.is_finite()) {
             return Err(ScaleError::Factor(factor));
@@ -57,7 +57,7 @@ fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, Scal
         far_m,
         band_m,
     } = map.accuracy();
-    // One more rounding of every coordinate.
+    // Every coordinate is rounded once more.
     let rounding = f32::EPSILON * (solid.min.abs().max(solid.max.abs())).length();
     let accuracy = Accuracy {
         near_m: (near_m + rounding) * factor,
@@ -79,7 +79,7 @@ fn scaled_tree(
     factor: f32,
 ) -> Result<PointSphereTree<'static>, ScaleError> {
     let times = |v: &[f32; 3]| v.map(|c| c * factor);
-    // What rounding may push a point out of its ball and off its dish.
+    // Rounding may move a point out of its ball and away from its paraboloid by this.
     let slack = 8.0 * f32::EPSILON * tree.reach();
     let cluster = |c: &Cluster| Cluster {
         center: times(&c.center),

@@ -1,4 +1,4 @@
-//! Solids whose penetration is exact.
+//! Analytic convex solids, whose penetration is exact.
 
 use glamx::Vec3;
 use wide::f32x4;
@@ -8,17 +8,16 @@ use crate::field::discs::Discs;
 use crate::field::distance_field::DistanceField;
 use crate::simd::{LANES, Points, Vectors};
 
-/// A convex solid. Its penetration is concave: nowhere above what it would be if it went on from a
-/// place as it starts there.
+/// A convex solid. Its penetration is concave: nowhere above its linear approximation at any point.
 pub(crate) trait Convex {
-    /// Penetrations in metres, and their gradients, of length one or zero.
+    /// Penetrations in metres, and their gradients, of unit or zero length.
     fn sample(&self, points: Vectors) -> (f32x4, Vectors);
 
-    /// A box that holds the solid.
+    /// A box that contains the solid.
     fn bounds(&self) -> Aabb;
 
-    /// How large the numbers are that a penetration is computed from, in metres.
-    fn size(&self) -> f32;
+    /// The magnitude of the lengths a penetration is computed from, in metres, for the rounding error.
+    fn magnitude(&self) -> f32;
 }
 
 impl<S: Convex> DistanceField for S {
@@ -42,7 +41,7 @@ impl<S: Convex> DistanceField for S {
     }
 
     fn error_bound(&self) -> f32 {
-        8.0 * f32::EPSILON * self.size()
+        8.0 * f32::EPSILON * self.magnitude()
     }
 
     #[inline(always)]
@@ -67,7 +66,7 @@ impl<S: Convex> DistanceField for S {
     }
 }
 
-/// A ball around the origin.
+/// A ball centred at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     radius: f32,
@@ -80,7 +79,7 @@ impl Ball {
     /// If the radius is not positive and finite.
     pub fn new(radius: f32) -> Self {
         Self {
-            radius: length("the radius of a ball", radius),
+            radius: checked_length("the radius of a ball", radius),
         }
     }
 }
@@ -88,33 +87,33 @@ impl Ball {
 impl Convex for Ball {
     #[inline(always)]
     fn sample(&self, points: Vectors) -> (f32x4, Vectors) {
-        let (distance, outward) = with_direction(points);
+        let (distance, outward) = length_and_direction(points);
         (f32x4::splat(self.radius) - distance, outward.negated())
     }
 
     fn bounds(&self) -> Aabb {
-        symmetric(Vec3::splat(self.radius))
+        centred_box(Vec3::splat(self.radius))
     }
 
-    fn size(&self) -> f32 {
+    fn magnitude(&self) -> f32 {
         self.radius
     }
 }
 
-/// A box around the origin, its edges along the axes.
+/// An axis-aligned box centred at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     half_extents: Vec3,
 }
 
 impl Cuboid {
-    /// A box that reaches `half_extents` metres from the origin along each axis.
+    /// A box that extends `half_extents` metres from the origin along each axis.
     ///
     /// # Panics
     /// If a half extent is not positive and finite.
     pub fn new(half_extents: Vec3) -> Self {
         for extent in half_extents.to_array() {
-            length("the half extent of a cuboid", extent);
+            checked_length("the half extent of a cuboid", extent);
         }
         Self { half_extents }
     }
@@ -123,13 +122,16 @@ impl Cuboid {
 impl Convex for Cuboid {
     #[inline(always)]
     fn sample(&self, points: Vectors) -> (f32x4, Vectors) {
-        let beyond = points.abs().minus(Vectors::splat(self.half_extents));
-        let nearest = beyond.x.fast_max(beyond.y).fast_max(beyond.z);
-        let (outside, outward) = with_direction(beyond.at_least_zero());
+        let outside_faces = points.abs().minus(Vectors::splat(self.half_extents));
+        let nearest = outside_faces
+            .x
+            .fast_max(outside_faces.y)
+            .fast_max(outside_faces.z);
+        let (outside, outward) = length_and_direction(outside_faces.at_least_zero());
         let penetrations = -(outside + nearest.fast_min(f32x4::ZERO));
-        // Inside of the box the way out is that to the nearest face, the first of equally near ones.
-        let x = beyond.x.simd_ge(nearest);
-        let y = beyond.y.simd_ge(nearest) & !x;
+        // Inside of the box the gradient is that of the nearest face, the first of equally near ones.
+        let x = outside_faces.x.simd_ge(nearest);
+        let y = outside_faces.y.simd_ge(nearest) & !x;
         let z = !(x | y);
         let is_inside = nearest.simd_le(f32x4::ZERO);
         let one = |mask: f32x4| mask & f32x4::ONE;
@@ -142,22 +144,22 @@ impl Convex for Cuboid {
     }
 
     fn bounds(&self) -> Aabb {
-        symmetric(self.half_extents)
+        centred_box(self.half_extents)
     }
 
-    fn size(&self) -> f32 {
+    fn magnitude(&self) -> f32 {
         self.half_extents.max_element()
     }
 }
 
-/// All of space on one side of a plane through the origin.
+/// The half-space on one side of a plane through the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
     outward_normal: Vec3,
 }
 
 impl HalfSpace {
-    /// The half-space `outward_normal` points away from.
+    /// The half-space that `outward_normal` points away from.
     ///
     /// # Panics
     /// If the normal is zero or not finite.
@@ -179,15 +181,15 @@ impl Convex for HalfSpace {
     }
 
     fn bounds(&self) -> Aabb {
-        symmetric(Vec3::INFINITY)
+        centred_box(Vec3::INFINITY)
     }
 
-    fn size(&self) -> f32 {
+    fn magnitude(&self) -> f32 {
         1.0
     }
 }
 
-/// All that is closer than a radius to a piece of the y axis around the origin.
+/// The points within a radius of a segment of the y axis centred at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     half_height: f32,
@@ -195,14 +197,14 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// A capsule whose axis reaches `half_height` metres from the origin both ways along y.
+    /// A capsule whose segment extends `half_height` metres from the origin to either side along y.
     ///
     /// # Panics
     /// If a length is not positive and finite.
     pub fn new(half_height: f32, radius: f32) -> Self {
         Self {
-            half_height: length("the half height of a capsule", half_height),
-            radius: length("the radius of a capsule", radius),
+            half_height: checked_length("the half height of a capsule", half_height),
+            radius: checked_length("the radius of a capsule", radius),
         }
     }
 }
@@ -212,7 +214,7 @@ impl Convex for Capsule {
     fn sample(&self, points: Vectors) -> (f32x4, Vectors) {
         let half = f32x4::splat(self.half_height);
         let on_axis = points.y.fast_max(-half).fast_min(half);
-        let (distance, outward) = with_direction(Vectors {
+        let (distance, outward) = length_and_direction(Vectors {
             y: points.y - on_axis,
             ..points
         });
@@ -220,19 +222,19 @@ impl Convex for Capsule {
     }
 
     fn bounds(&self) -> Aabb {
-        symmetric(Vec3::new(
+        centred_box(Vec3::new(
             self.radius,
             self.half_height + self.radius,
             self.radius,
         ))
     }
 
-    fn size(&self) -> f32 {
+    fn magnitude(&self) -> f32 {
         self.half_height + self.radius
     }
 }
 
-/// A cylinder around the y axis, its middle at the origin.
+/// A cylinder around the y axis, centred at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     half_height: f32,
@@ -240,14 +242,14 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// A cylinder that reaches `half_height` metres from the origin both ways along y.
+    /// A cylinder that extends `half_height` metres from the origin to either side along y.
     ///
     /// # Panics
     /// If a length is not positive and finite.
     pub fn new(half_height: f32, radius: f32) -> Self {
         Self {
-            half_height: length("the half height of a cylinder", half_height),
-            radius: length("the radius of a cylinder", radius),
+            half_height: checked_length("the half height of a cylinder", half_height),
+            radius: checked_length("the radius of a cylinder", radius),
         }
     }
 }
@@ -256,11 +258,11 @@ impl Convex for Cylinder {
     #[inline(always)]
     fn sample(&self, points: Vectors) -> (f32x4, Vectors) {
         let (zero, one) = (f32x4::ZERO, f32x4::ONE);
-        let (from_axis, aside) = with_direction(Vectors { y: zero, ..points });
-        // How far beyond the wall and beyond the ends.
+        let (from_axis, aside) = length_and_direction(Vectors { y: zero, ..points });
+        // Signed distances from the wall and from the ends.
         let wall = from_axis - self.radius;
         let end = points.y.abs() - self.half_height;
-        let (outside, outward) = with_direction(Vectors {
+        let (outside, outward) = length_and_direction(Vectors {
             x: wall.fast_max(zero),
             y: end.fast_max(zero),
             z: zero,
@@ -280,17 +282,17 @@ impl Convex for Cylinder {
     }
 
     fn bounds(&self) -> Aabb {
-        symmetric(Vec3::new(self.radius, self.half_height, self.radius))
+        centred_box(Vec3::new(self.radius, self.half_height, self.radius))
     }
 
-    fn size(&self) -> f32 {
+    fn magnitude(&self) -> f32 {
         self.half_height + self.radius
     }
 }
 
-/// Lengths and directions of vectors, the direction of none being zero.
+/// Lengths and directions of vectors; the direction of a zero vector is zero.
 #[inline(always)]
-fn with_direction(v: Vectors) -> (f32x4, Vectors) {
+fn length_and_direction(v: Vectors) -> (f32x4, Vectors) {
     let length = v.length();
     let per_length = length
         .simd_gt(f32x4::ZERO)
@@ -298,7 +300,7 @@ fn with_direction(v: Vectors) -> (f32x4, Vectors) {
     (length, v.times(per_length))
 }
 
-fn length(what: &str, length: f32) -> f32 {
+fn checked_length(what: &str, length: f32) -> f32 {
     assert!(
         length > 0.0 && length.is_finite(),
         "{what} must be positive and finite, not {length}"
@@ -306,7 +308,7 @@ fn length(what: &str, length: f32) -> f32 {
     length
 }
 
-fn symmetric(corner: Vec3) -> Aabb {
+fn centred_box(corner: Vec3) -> Aabb {
     Aabb {
         min: -corner,
         max: corner,

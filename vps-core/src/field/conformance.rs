@@ -1,4 +1,4 @@
-//! What any [`DistanceField`] must satisfy, for the tests of those who implement one.
+//! The conformance suite of [`DistanceField`], for the tests of implementations.
 
 use glamx::Vec3;
 
@@ -7,7 +7,7 @@ use crate::field::discs::Discs;
 use crate::field::distance_field::DistanceField;
 use crate::simd::{LANES, Points};
 
-/// A promise of [`DistanceField`] that was broken.
+/// A violated requirement of [`DistanceField`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Violation {
     /// The bound of a ball or disc is below the penetration of a point in it.
@@ -35,27 +35,27 @@ pub enum Violation {
         center: Vec3,
         /// Its bound.
         disc: f32,
-        /// That of the ball.
+        /// The bound of the ball.
         ball: f32,
     },
-    /// Several points at a time have other penetrations than one by one.
+    /// The penetration of a point differs between the scalar and the SIMD method.
     #[error("{point} has penetration {alone} m alone, but {together} m with others")]
     Lanes {
         /// The point.
         point: Vec3,
         /// Its penetration.
         alone: f32,
-        /// As one of several.
+        /// Its penetration as one of several points.
         together: f32,
     },
-    /// A point in the solid lies outside of its bounds.
+    /// A point of the solid lies outside of the bounds.
     #[error("{point} is {penetration} m inside, but out of bounds {bounds:?}")]
     Bounds {
         /// The point.
         point: Vec3,
         /// Its penetration.
         penetration: f32,
-        /// What should hold it.
+        /// The bounds.
         bounds: Aabb,
     },
     /// A gradient is not finite.
@@ -76,13 +76,12 @@ pub enum Violation {
     },
 }
 
-/// Checks the promises for a ball, a disc and a point in both: `inside` lies in the unit ball and
-/// is scaled to the ball around `center`; the disc lies across the unit vector `normal`, which is
-/// also that of the point, and is flat or bent one way or the other, and as thick as the point needs
-/// it to be.
+/// Checks the requirements for a ball, discs, and a point in all of them. `inside` lies in the unit ball
+/// and is scaled to the ball around `center`. The unit vector `normal` is the normal of the discs and of
+/// the point. The discs are flat or curved to either side, and thick enough to contain the point.
 ///
 /// # Errors
-/// The first promise that is broken.
+/// The first violation.
 pub fn check(
     field: &impl DistanceField,
     center: Vec3,
@@ -107,8 +106,8 @@ pub fn check(
     };
     for lane in 0..LANES {
         let above = height - discs.bulges[lane] * square;
-        // The flat one stays at the centre. Others are lifted half of the way to the point and are
-        // as thick as the other half; the last is lifted right to it.
+        // The flat disc stays at the centre. The next two are lifted halfway to the point, with the other
+        // half as their thickness; the last one is lifted to the point.
         discs.lifts[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
         discs.thickness[lane] = (above - discs.lifts[lane]).abs() + rounding;
     }

@@ -1,14 +1,14 @@
-//! Pieces of a shell for which a field bounds its penetration.
+//! Pieces of a shell, in which a field bounds the penetration.
 
 use glamx::Vec3;
 use wide::f32x4;
 
 use crate::simd::{LANES, Points, Vectors};
 
-/// Pieces of a shell, each close to a dish: a disc that may be bent like a bowl. A piece holds what
-/// is no further than its radius from its centre, and no further than its thickness, measured along
-/// its normal, from the height lift + bulge × r² above the plane through the centre, r being the
-/// distance from the line through the centre along the normal. Lengths in metres.
+/// Pieces of a shell, each within a ball and close to a paraboloid over a disc. A piece contains the
+/// points within its radius of its centre whose height above the plane through the centre, along its
+/// normal, is lift + bulge × r² up to its thickness, r being the distance from the axis through the
+/// centre along the normal. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discs {
     /// Their centres.
@@ -17,16 +17,16 @@ pub struct Discs {
     pub radii: [f32; LANES],
     /// Unit normals of their planes.
     pub normals: Points,
-    /// How high above its centre the middle of a dish is.
+    /// Heights of the apices of the paraboloids above the centres.
     pub lifts: [f32; LANES],
-    /// How much a dish bends towards its normal, per metre.
+    /// Half curvatures of the paraboloids, per metre; positive towards the normals.
     pub bulges: [f32; LANES],
-    /// How far from its dish a piece reaches on either side.
+    /// The largest distances from the paraboloids to either side, along the normals.
     pub thickness: [f32; LANES],
 }
 
 impl Discs {
-    /// As thick as they are wide.
+    /// Balls: discs as thick as they are wide.
     #[inline(always)]
     pub fn balls(centers: &Points, radii: [f32; LANES]) -> Self {
         Self {
@@ -39,8 +39,8 @@ impl Discs {
         }
     }
 
-    /// How far a piece reaches from its centre in a direction of length one, in metres, at most: for
-    /// fields that look at one piece after the other.
+    /// The support of a piece: the furthest it reaches from its centre in a unit direction, in metres. For
+    /// fields that bound one piece after the other.
     #[inline]
     pub fn reach(&self, lane: usize, direction: Vec3) -> f32 {
         let radius = self.radii[lane];
@@ -55,17 +55,17 @@ impl Discs {
         } else {
             radius
         };
-        let on_dish = across * self.lifts[lane]
+        let on_paraboloid = across * self.lifts[lane]
             + across.abs() * self.thickness[lane]
             + r * (along + bend * r);
-        on_dish.min(radius)
+        on_paraboloid.min(radius)
     }
 
-    /// The pieces grown to hold what is up to `by` metres away from a point of theirs.
+    /// The pieces inflated to contain all points within `by` metres of their points.
     #[inline(always)]
     pub(crate) fn grown(&self, by: f32) -> Self {
         let radii = f32x4::new(self.radii);
-        // A step aside of `by` changes the height of the dish by no more than this.
+        // A sideways step of `by` changes the height of the paraboloid by at most this.
         let aside = f32x4::new(self.bulges).abs() * (radii + radii + by) * by;
         Self {
             radii: (radii + by).to_array(),
@@ -74,22 +74,22 @@ impl Discs {
         }
     }
 
-    /// How much more than at its centre a linear function with the given gradients (per metre),
-    /// none longer than `steepest`, is in a piece at most.
+    /// The most by which a linear function exceeds, in a piece, its value at the centre, given its gradient
+    /// per metre, which is no longer than `steepest`.
     #[inline(always)]
     pub(crate) fn rise(&self, gradients: Vectors, steepest: f32x4) -> f32x4 {
         let normals = Vectors::from(self.normals);
         let radii = f32x4::new(self.radii);
         let across = gradients.dot(normals);
         let along = gradients.minus(normals.times(across)).length();
-        // On the dish the function is along r + bend r²: largest at the rim, or before it.
+        // On the paraboloid the function is along r + bend r²: largest at the rim or at the vertex.
         let bend = across * f32x4::new(self.bulges);
-        let before = radii.fast_min(along / (bend * -2.0));
-        let r = bend.simd_lt(f32x4::ZERO).select(before, radii);
-        let on_dish = across * f32x4::new(self.lifts)
+        let vertex = radii.fast_min(along / (bend * -2.0));
+        let r = bend.simd_lt(f32x4::ZERO).select(vertex, radii);
+        let on_paraboloid = across * f32x4::new(self.lifts)
             + across.abs() * f32x4::new(self.thickness)
             + r * (along + bend * r);
-        // Never more than in the ball around.
-        on_dish.fast_min(steepest * radii)
+        // At most its rise in the ball around.
+        on_paraboloid.fast_min(steepest * radii)
     }
 }

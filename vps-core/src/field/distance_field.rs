@@ -1,4 +1,4 @@
-//! What a query asks of a solid.
+//! The interface of a solid to queries.
 
 use glamx::Vec3;
 
@@ -6,7 +6,7 @@ use crate::aabb::Aabb;
 use crate::field::discs::Discs;
 use crate::simd::{LANES, Points};
 
-/// A solid given by how deep a point lies in it.
+/// A solid given by the penetration of points: the negative of a signed distance.
 ///
 /// Everything is in the field's own frame and in metres. Voxelmaps (through their views, such as
 /// [`Voxelmap::trilinear`](crate::Voxelmap::trilinear)), analytic shapes and
@@ -20,16 +20,15 @@ pub trait DistanceField {
     /// needs it, for the local part of the penetration; other fields ignore it.
     fn penetration(&self, point: Vec3, normal: Vec3) -> f32;
 
-    /// The direction in which penetration grows at `point`, of length one, or zero where the field
-    /// has none (at the centre of a ball).
+    /// The unit direction in which penetration grows at `point`, or zero where there is none (at the
+    /// centre of a ball).
     fn inward_direction(&self, point: Vec3) -> Vec3;
 
-    /// An upper bound in metres on [`penetration`](Self::penetration) for every point of the ball
-    /// around `center`, whatever its normal: a ball whose bound is below a threshold holds no
-    /// point that reaches it. The closer it is, the less a query has to look at.
+    /// An upper bound in metres on [`penetration`](Self::penetration) for every point of the ball around
+    /// `center`, with any normal. The tighter it is, the more a query can prune.
     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32;
 
-    /// A box that holds the solid.
+    /// A box that contains the solid.
     fn bounds(&self) -> Aabb;
 
     /// The largest difference in metres between [`penetration`](Self::penetration) and the exact
@@ -48,9 +47,8 @@ pub trait DistanceField {
         core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
     }
 
-    /// [`penetrations`](Self::penetrations), the same to the bit, and their gradients: the direction in
-    /// which penetration grows, as long as it grows per metre. That of a point outside of the solid
-    /// may be zero. A field that does not say otherwise gives
+    /// [`penetrations`](Self::penetrations), the same to the bit, and their gradients ∇V per metre, which
+    /// point inwards. The gradient at a point outside of the solid may be zero. The default is
     /// [`inward_direction`](Self::inward_direction).
     #[inline(always)]
     fn penetrations_and_gradients(
@@ -69,9 +67,8 @@ pub trait DistanceField {
     }
 
     /// Upper bounds on the [`penetration`](Self::penetration) in several pieces, each at most the
-    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field that knows
-    /// how it bends can use how flat a piece is, and which way it is bent; others take the balls
-    /// around them.
+    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field with known curvature
+    /// can exploit the shape of a piece; the default takes the balls.
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         core::array::from_fn(|i| self.penetration_bound(discs.centers.get(i), discs.radii[i]))

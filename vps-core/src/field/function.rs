@@ -5,7 +5,7 @@ use glamx::Vec3;
 use crate::aabb::Aabb;
 use crate::field::distance_field::DistanceField;
 
-/// A field given by a function: anything a signed distance, or a bound of one, can be computed of.
+/// A field given by a function that computes a signed distance or an approximation of one.
 ///
 /// ```
 /// use vps_core::{Aabb, DistanceField, FieldFn, Vec3};
@@ -24,11 +24,10 @@ pub struct FieldFn<F> {
 }
 
 impl<F: Fn(Vec3) -> f32> FieldFn<F> {
-    /// `penetration` in metres, positive inside of the solid, which `bounds` holds.
+    /// `penetration` in metres, positive inside of the solid, which lies in `bounds`.
     ///
-    /// No two points may differ in it by more than `steepness` times their distance: 1 for a signed
-    /// distance, more for what is only like one. `error_bound` is how far it may be from the exact
-    /// penetration near the surface, in metres.
+    /// `steepness` is its Lipschitz constant: 1 for a signed distance, more for an approximation.
+    /// `error_bound` is its largest error near the surface, in metres.
     ///
     /// # Panics
     /// If the steepness is not positive and finite, or the error negative.
@@ -46,17 +45,17 @@ impl<F: Fn(Vec3) -> f32> FieldFn<F> {
     }
 }
 
-/// How far apart the slope is taken, as a part of the size of the solid.
-const STEP: f32 = 1e-3;
+/// Step of the finite differences, as a fraction of the size of the solid.
+const DIFFERENCE_STEP: f32 = 1e-3;
 
 impl<F: Fn(Vec3) -> f32> DistanceField for FieldFn<F> {
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
         (self.penetration)(point)
     }
 
-    /// By differences over a thousandth of the size of the solid.
+    /// By central differences with a step of a thousandth of the size of the solid.
     fn inward_direction(&self, point: Vec3) -> Vec3 {
-        let step = STEP * self.bounds.extents().max_element();
+        let step = DIFFERENCE_STEP * self.bounds.extents().max_element();
         let slope = |axis: Vec3| {
             (self.penetration)(point + axis * step) - (self.penetration)(point - axis * step)
         };

@@ -6,110 +6,109 @@ use crate::aabb::Aabb;
 use crate::field::discs::Discs;
 use crate::simd::Vectors;
 
-/// No vectors, and no coordinates where vectors are masks.
+/// Zero vectors; as masks, no coordinate.
 const NONE: Vectors = Vectors {
     x: f32x4::ZERO,
     y: f32x4::ZERO,
     z: f32x4::ZERO,
 };
 
-/// A linear function that what is interpolated in the grid hardly exceeds, around the point of the
-/// grid that is closest to the centre of a piece.
+/// A linear upper bound on the interpolated penetration, up to an excess, around the point of the grid
+/// that is closest to the centre of a piece.
 #[derive(Clone, Copy)]
-pub(crate) struct Tangent {
+pub(crate) struct LinearBound {
     /// The penetration at that point.
     pub(crate) value: f32x4,
-    /// And its gradient, per metre.
+    /// The gradient there, per metre.
     pub(crate) gradient: Vectors,
-    /// By how much it is exceeded at most, as far from that point as the piece reaches from its
-    /// centre.
+    /// The most by which the function is exceeded within the radius of the piece, in metres.
     pub(crate) excess: f32x4,
 }
 
-/// The border of a grid where pieces are.
+/// Pieces near the border of a grid.
 ///
-/// A piece is bounded by linear functions that hold for all its points that leave the grid along the
-/// same axes. In the grid that is the one given. Outside, the vector z of d(c) and of w + g is as
-/// long as √(V² + |g|²), and no shorter than e·z for any unit vector e: e is taken along z where the
-/// piece comes closest, for an e taken along the z of its centre. Of points that leave along an axis
-/// on which others do not, no more is used than that |V| ≥ d(c).
+/// A piece is bounded by linear functions, one for all its points that leave the grid along the same
+/// axes. In the grid it is the given [`LinearBound`]. Outside, the vector z of d(c) and of w + g has the
+/// length √(V² + |g|²), which is at least e·z for any unit vector e. First e is taken along the z of the
+/// centre; then it is taken along the z of the point of the piece that comes closest for the first e. For
+/// points that leave along an axis on which others do not, only |V| ≥ d(c) is used.
 #[derive(Clone, Copy)]
-pub(crate) struct Border {
-    /// From the closest points of the grid to the centres: zero along axes that do not leave it.
-    way: Vectors,
-    /// From the closest point of the border to the centre along each axis, inside as well.
+pub(crate) struct GridBorder {
+    /// From the closest points of the grid to the centres: zero along axes within the grid.
+    offset: Vectors,
+    /// From the closest face of the grid to the centre along each axis, inside of the grid as well.
     from_border: Vectors,
-    /// From the box of the solid to the border there.
+    /// From the box of the solid to that face.
     gap: Vectors,
-    /// Axes along which all points of a piece leave the grid.
-    leave: Vectors,
-    /// Axes along which some may.
-    straddle: Vectors,
+    /// Axes along which all points of a piece are outside of the grid.
+    outside: Vectors,
+    /// Axes along which some points may be outside.
+    straddling: Vectors,
 }
 
-impl Border {
-    /// `inside` are the points of the `grid` that are closest to the centres of the pieces.
+impl GridBorder {
+    /// `clamped` are the closest points of the `grid` to the centres of the pieces.
     #[inline(always)]
-    pub(crate) fn new(discs: &Discs, inside: Vectors, grid: &Aabb, solid: &Aabb) -> Self {
+    pub(crate) fn new(discs: &Discs, clamped: Vectors, grid: &Aabb, solid: &Aabb) -> Self {
         let (centers, radii) = (Vectors::from(discs.centers), f32x4::new(discs.radii));
         let from_low = centers.minus(Vectors::splat(grid.min));
         let from_high = centers.minus(Vectors::splat(grid.max));
         let is_low = from_low.abs().is_less(from_high.abs());
         let from_border = is_low.select(from_low, from_high);
         let border = centers.minus(from_border);
-        let way = centers.minus(inside);
-        let is_out = NONE.is_less(way.abs());
+        let offset = centers.minus(clamped);
+        let is_out = NONE.is_less(offset.abs());
         let (x, y, z) = (radii, radii, radii);
-        let straddle = from_border.abs().is_less(Vectors { x, y, z });
+        let straddling = from_border.abs().is_less(Vectors { x, y, z });
         Self {
-            way,
+            offset,
             from_border,
             gap: border.minus(border.clamped(solid)),
-            leave: straddle.select(NONE, is_out),
-            straddle,
+            outside: straddling.select(NONE, is_out),
+            straddling,
         }
     }
 
-    /// Pieces that straddle the border along no more than one axis: only of these
-    /// [`bounds`](Self::bounds) says anything.
+    /// The lanes whose piece straddles the border along at most one axis: [`bounds`](Self::bounds) holds
+    /// only for these.
     #[inline(always)]
-    pub(crate) fn is_simple(&self) -> f32x4 {
-        let Vectors { x, y, z } = self.straddle;
+    pub(crate) fn straddles_at_most_one_axis(&self) -> f32x4 {
+        let Vectors { x, y, z } = self.straddling;
         !((x & y) | (y & z) | (z & x))
     }
 
-    /// Upper bounds of what is sampled in the pieces.
+    /// Upper bounds on the sampled penetration in the pieces.
     #[inline(always)]
-    pub(crate) fn bounds(&self, discs: &Discs, tangent: &Tangent) -> f32x4 {
-        let bounds = self.bounds_of(discs, tangent, NONE);
-        if self.straddle.any().any() {
-            bounds.fast_max(self.bounds_of(discs, tangent, self.straddle))
+    pub(crate) fn bounds(&self, discs: &Discs, linear: &LinearBound) -> f32x4 {
+        let bounds = self.bounds_of_part(discs, linear, NONE);
+        if self.straddling.any().any() {
+            bounds.fast_max(self.bounds_of_part(discs, linear, self.straddling))
         } else {
             bounds
         }
     }
 
-    /// The same for those points that also leave the grid along the axes `beside`.
+    /// The same for the points that are also outside along the axes `also_outside`.
     #[inline(always)]
-    fn bounds_of(&self, discs: &Discs, tangent: &Tangent, beside: Vectors) -> f32x4 {
-        // Where the closest point of the grid is that belongs to the centre then.
-        let to_border = self.way.minus(self.from_border);
-        let shift = beside.select(to_border, self.leave.select(to_border, self.way));
-        let value = tangent.value + tangent.gradient.dot(shift);
-        let gradient = beside.select(NONE, self.leave.select(NONE, tangent.gradient));
-        let leaves = self.leave.any();
-        if !leaves.any() {
-            return value + discs.rise(gradient, gradient.length()) + tangent.excess;
+    fn bounds_of_part(&self, discs: &Discs, linear: &LinearBound, also_outside: Vectors) -> f32x4 {
+        // From the closest point of the grid to the one that belongs to the centre in this case.
+        let to_border = self.offset.minus(self.from_border);
+        let shift = also_outside.select(to_border, self.outside.select(to_border, self.offset));
+        let value = linear.value + linear.gradient.dot(shift);
+        let gradient = also_outside.select(NONE, self.outside.select(NONE, linear.gradient));
+        let is_outside = self.outside.any();
+        if !is_outside.any() {
+            return value + discs.rise(gradient, gradient.length()) + linear.excess;
         }
-        let gap = self.leave.select(self.gap, NONE);
-        let out = self.leave.select(self.from_border.plus(self.gap), NONE);
+        let gap = self.outside.select(self.gap, NONE);
+        let out = self.outside.select(self.from_border.plus(self.gap), NONE);
         let along = |distance: f32x4, out: Vectors| {
             let depth = distance.fast_max(f32x4::ZERO);
             let length = (depth * depth + out.dot(out)).sqrt();
-            let shorter = length.simd_gt(f32x4::ZERO) & (f32x4::ONE / length);
+            let reciprocal = length.simd_gt(f32x4::ZERO) & (f32x4::ONE / length);
             (
-                leaves.select(depth * shorter, f32x4::ONE),
-                out.times(shorter),
+                is_outside.select(depth * reciprocal, f32x4::ONE),
+                out.times(reciprocal),
             )
         };
         let rise = |(of_distance, of_out): (f32x4, Vectors)| {
@@ -121,14 +120,15 @@ impl Border {
         let step = slope.times(steepest.simd_gt(f32x4::ZERO) & (rises / (steepest * steepest)));
         let closest = along(
             -value - gradient.dot(step),
-            self.leave.select(out.plus(step), NONE),
+            self.outside.select(out.plus(step), NONE),
         );
         let (of_distance, of_out) = closest;
         let (_, _, rises) = rise(closest);
-        let least = of_out.dot(out) - of_distance * (value + tangent.excess) - rises;
+        let shortest = of_out.dot(out) - of_distance * (value + linear.excess) - rises;
         let gap = gap.length();
-        // By factors: the difference of squares would be lost to rounding.
-        let square = (least - gap).fast_max(f32x4::ZERO) * (least + gap).fast_max(f32x4::ZERO);
-        -leaves.select(square.sqrt(), least)
+        // In factors: the difference of squares would cancel.
+        let square =
+            (shortest - gap).fast_max(f32x4::ZERO) * (shortest + gap).fast_max(f32x4::ZERO);
+        -is_outside.select(square.sqrt(), shortest)
     }
 }

@@ -6,24 +6,24 @@ use glamx::{Mat3, Quat, Vec3};
 use wide::f32x4;
 
 use crate::field::DistanceField;
-use crate::force::wrench::{Sum, Weight, Wrench};
+use crate::force::wrench::{Weight, Wrench, WrenchSum};
 use crate::query::posed::Query;
-use crate::query::search::{Found, Goal};
+use crate::query::search::{Collector, Found};
 use crate::query::work::CountWork;
 use crate::simd::Vectors;
 
-/// The wrench of a potential, and how it changes when the shell's body moves: what an implicit
-/// integrator needs to stay stable however stiff the contacts are.
+/// The wrench of a potential with its derivative by the pose of the shell's body. An implicit integrator
+/// needs both to stay stable with contacts of any stiffness.
 ///
 /// A contact stores the energy w V² / 2 for stiffness one, w being its [`Weight`]. With
-/// n = −∇V, the way out of the solid as the field has it at the contact, it exerts the force w V n.
-/// Displaced by d and turned by the small rotation vector θ about the point the torque is about, it is
+/// n = −∇V, the outward gradient of the field at the contact, it exerts the force w V n. After a
+/// displacement d and a small rotation θ (a vector) about the reference point of the torque, it is
 /// deeper by −(n·d + (r × n)·θ). So the force changes by −(`translational` d + `mixed`ᵀ θ) and the
-/// torque by −(`mixed` d + `rotational` θ): the derivative by the pose of a field that is flat where
-/// it is touched. Left out is what its curvature adds, which turns forces but stores nothing.
+/// torque by −(`mixed` d + `rotational` θ). This is the derivative by the pose for a field without
+/// curvature at the contact. The curvature term, which turns forces but stores no energy, is left out.
 ///
-/// The normals of the shell are not in it. Where they are tilted, as at sharp edges, forces along
-/// them would belong to no potential, and their stiffness would hold back what slides.
+/// The normals of the shell are not used. Where they are tilted, as at sharp edges, forces along them
+/// would not derive from a potential, and their stiffness would hinder sliding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinearWrench {
     /// Force and torque: minus the derivative of the potential.
@@ -48,18 +48,18 @@ impl LinearWrench {
         rotational: Mat3::ZERO,
     };
 
-    /// The same in the frame that `rotation` takes its vectors to.
+    /// The same wrench in another frame; `rotation` transforms vectors to that frame.
     pub fn rotated(&self, rotation: Quat) -> Self {
         let to = Mat3::from_quat(rotation);
-        let turned = |matrix| to * matrix * to.transpose();
+        let rotated_matrix = |matrix| to * matrix * to.transpose();
         Self {
             wrench: Wrench {
                 force: rotation * self.wrench.force,
                 torque: rotation * self.wrench.torque,
             },
-            translational: turned(self.translational),
-            mixed: turned(self.mixed),
-            rotational: turned(self.rotational),
+            translational: rotated_matrix(self.translational),
+            mixed: rotated_matrix(self.mixed),
+            rotational: rotated_matrix(self.rotational),
         }
     }
 
@@ -72,7 +72,7 @@ impl LinearWrench {
     }
 }
 
-/// Of one that does not change with the pose.
+/// A wrench that does not change with the pose.
 impl From<Wrench> for LinearWrench {
     fn from(wrench: Wrench) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl From<Wrench> for LinearWrench {
     }
 }
 
-/// For a stiffness other than one.
+/// Scaling by a stiffness.
 impl Mul<f32> for LinearWrench {
     type Output = Self;
 
@@ -100,14 +100,14 @@ impl Mul<f32> for LinearWrench {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// Force and torque on the shell's body about `center` along the gradient of the field, and how
-    /// they change with the pose; all in the shell frame, for stiffness one. Where the shell's
-    /// normals are those of the field, the force is that of [`wrench`](Self::wrench).
+    /// Force along the gradient of the field and torque about `center` on the shell's body, with their
+    /// derivative by the pose; all in the shell frame, for stiffness one. Where the shell's normals equal
+    /// those of the field, the force equals that of [`wrench`](Self::wrench).
     pub fn linear_wrench(&self, center: Vec3, weight: Weight) -> LinearWrench {
-        let least = (-self.margin).max(0.0);
+        let penetration_threshold = (-self.margin).max(0.0);
         let none = [Vectors::splat(Vec3::ZERO); 3];
-        let found = self.find(Linear {
-            sum: Sum::new(self.tree, center, weight, least),
+        let found = self.collect(LinearWrenchSum {
+            sum: WrenchSum::new(self.tree, center, weight, penetration_threshold),
             translational: none,
             mixed: none,
             rotational: none,
@@ -125,35 +125,35 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     }
 }
 
-/// The wrench of all contacts and the columns of its matrices, lane by lane.
-struct Linear<'q> {
-    sum: Sum<'q>,
+/// Sums up the wrench of all contacts and the columns of its matrices, lane by lane.
+struct LinearWrenchSum<'q> {
+    sum: WrenchSum<'q>,
     translational: [Vectors; 3],
     mixed: [Vectors; 3],
     rotational: [Vectors; 3],
 }
 
-impl Goal for Linear<'_> {
+impl Collector for LinearWrenchSum<'_> {
     const BEST_FIRST: bool = false;
-    const ALL: bool = true;
-    const WAY_OUT: bool = true;
+    const COLLECTS_ALL: bool = true;
+    const NEEDS_GRADIENT: bool = true;
 
     #[inline(always)]
-    fn least_penetration(&self) -> f32 {
-        self.sum.least_penetration()
+    fn penetration_threshold(&self) -> f32 {
+        self.sum.penetration_threshold()
     }
 
     #[inline(always)]
-    fn offer(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &Found<'_>) -> bool {
         let is_inside = found.penetrations.simd_gt(f32x4::ZERO);
         let weights = self.sum.weighted(found, is_inside & f32x4::ONE);
-        let normals = found.way_out;
-        let moments = self.sum.arms(found).cross(normals);
+        let normals = found.outward;
+        let moments = self.sum.lever_arms(found).cross(normals);
         let (n, m) = (normals.times(weights), moments.times(weights));
         add_product(&mut self.translational, normals, n);
         add_product(&mut self.mixed, moments, n);
         add_product(&mut self.rotational, moments, m);
-        self.sum.push(found, normals);
+        self.sum.add_forces(found, normals);
         true
     }
 }

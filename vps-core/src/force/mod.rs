@@ -1,4 +1,4 @@
-//! Penalty forces, their derivative by the pose, and a coupling to a haptic device.
+//! Penalty forces, their derivative by the pose, and the virtual coupling to a haptic device.
 
 mod coupling;
 mod linear_wrench;

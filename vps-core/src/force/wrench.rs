@@ -6,7 +6,7 @@ use wide::f32x4;
 use crate::field::DistanceField;
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
-use crate::query::search::{Found, Goal};
+use crate::query::search::{Collector, Found};
 use crate::query::work::CountWork;
 use crate::shell::PointSphereTree;
 use crate::simd::{Vectors, padded};
@@ -16,11 +16,12 @@ use crate::simd::{Vectors, padded};
 pub struct Wrench {
     /// Sum of wVn over the contacts: newtons once multiplied by a stiffness.
     pub force: Vec3,
-    /// Sum of r × wVn with r from the point the torque is about.
+    /// Sum of r × wVn, r being the lever arm from the reference point: newton metres once multiplied
+    /// by a stiffness.
     pub torque: Vec3,
 }
 
-/// What each contact counts in a [`Wrench`].
+/// The weight of each contact in a [`Wrench`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weight {
     /// One, as in eqs. 2 and 3: the force is in metres, the stiffness in N/m. Twice the points
@@ -33,8 +34,8 @@ pub enum Weight {
 }
 
 impl Wrench {
-    /// Adds what a contact does to the shell's body about `center`, in the shell frame; nothing for
-    /// one outside of the solid.
+    /// Adds the force of a contact on the shell's body and its torque about `center`, in the shell
+    /// frame. A contact outside of the solid exerts none.
     #[inline]
     pub(crate) fn add(&mut self, contact: &Contact, weight: f32, center: Vec3) {
         let force = weight * contact.penetration.max(0.0) * contact.normal;
@@ -47,32 +48,37 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Penalty force and torque on the shell's body about `center`, all in the shell frame, for
     /// stiffness one. Points within the margin but outside of the solid add nothing.
     pub fn wrench(&self, center: Vec3, weight: Weight) -> Wrench {
-        let least = (-self.margin).max(0.0);
-        self.find(Sum::new(self.tree, center, weight, least))
-            .wrench()
+        let penetration_threshold = (-self.margin).max(0.0);
+        self.collect(WrenchSum::new(
+            self.tree,
+            center,
+            weight,
+            penetration_threshold,
+        ))
+        .wrench()
     }
 }
 
-/// The wrench of all contacts, lane by lane.
-pub(crate) struct Sum<'q> {
-    least: f32,
-    /// Of all points, if they count.
+/// Sums up the wrench of all contacts, lane by lane.
+pub(crate) struct WrenchSum<'q> {
+    penetration_threshold: f32,
+    /// The areas of all points, with [`Weight::Area`].
     areas: Option<&'q [f32]>,
     center: Vectors,
     force: Vectors,
     torque: Vectors,
 }
 
-impl<'q> Sum<'q> {
-    /// Of points with at least so much penetration.
+impl<'q> WrenchSum<'q> {
+    /// The sum over the points with at least that penetration.
     pub(crate) fn new(
         tree: &'q PointSphereTree<'_>,
         center: Vec3,
         weight: Weight,
-        least: f32,
+        penetration_threshold: f32,
     ) -> Self {
         Self {
-            least,
+            penetration_threshold,
             areas: (weight == Weight::Area).then(|| tree.areas()),
             center: Vectors::splat(center),
             force: Vectors::splat(Vec3::ZERO),
@@ -87,10 +93,10 @@ impl<'q> Sum<'q> {
         }
     }
 
-    /// A number of each point times what the point counts, zero for those that are no contacts.
+    /// Each number times the weight of its point, zero for points that are not in contact.
     #[inline(always)]
     pub(crate) fn weighted(&self, found: &Found<'_>, numbers: f32x4) -> f32x4 {
-        let numbers = found.counts & numbers;
+        let numbers = found.contact_mask & numbers;
         match self.areas {
             Some(areas) => {
                 numbers * padded(&areas[found.first as usize..], |areas| f32x4::new(*areas))
@@ -101,32 +107,32 @@ impl<'q> Sum<'q> {
 
     /// Adds the forces of contacts along `directions`.
     #[inline(always)]
-    pub(crate) fn push(&mut self, found: &Found<'_>, directions: Vectors) {
+    pub(crate) fn add_forces(&mut self, found: &Found<'_>, directions: Vectors) {
         let weights = self.weighted(found, found.penetrations.fast_max(f32x4::ZERO));
         let force = directions.times(weights);
         self.force = self.force.plus(force);
-        self.torque = self.torque.plus(self.arms(found).cross(force));
+        self.torque = self.torque.plus(self.lever_arms(found).cross(force));
     }
 
-    /// From the point the torque is about.
+    /// Lever arms from the reference point of the torque.
     #[inline(always)]
-    pub(crate) fn arms(&self, found: &Found<'_>) -> Vectors {
+    pub(crate) fn lever_arms(&self, found: &Found<'_>) -> Vectors {
         found.positions.minus(self.center)
     }
 }
 
-impl Goal for Sum<'_> {
+impl Collector for WrenchSum<'_> {
     const BEST_FIRST: bool = false;
-    const ALL: bool = true;
+    const COLLECTS_ALL: bool = true;
 
     #[inline(always)]
-    fn least_penetration(&self) -> f32 {
-        self.least
+    fn penetration_threshold(&self) -> f32 {
+        self.penetration_threshold
     }
 
     #[inline(always)]
-    fn offer(&mut self, found: &Found<'_>) -> bool {
-        self.push(found, found.inward);
+    fn add(&mut self, found: &Found<'_>) -> bool {
+        self.add_forces(found, found.inward);
         true
     }
 }

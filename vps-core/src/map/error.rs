@@ -6,7 +6,7 @@ use crate::map::accuracy::Accuracy;
 /// Why a [`Voxelmap`](crate::Voxelmap) was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VoxelmapError {
-    /// Each voxel of a dense store needs a value, a sparse one what its cells say.
+    /// The number of values does not match the dimensions of a dense store, or the cells of a sparse one.
     #[error("{values} values in a store that needs {expected}")]
     ValueCount {
         /// Values given.
@@ -14,16 +14,16 @@ pub enum VoxelmapError {
         /// Values needed.
         expected: usize,
     },
-    /// Between voxels is interpolated.
+    /// Interpolation needs two voxels along each axis.
     #[error("a map needs two voxels along each axis, not {0:?}")]
     Thin([u32; 3]),
-    /// The cells of a sparse store are not counted right.
+    /// The cells of a sparse store are inconsistent.
     #[error("the cells of the sparse store do not fit together")]
     Cells,
-    /// A value is no number.
+    /// A value is not finite.
     #[error("a stored distance is not finite")]
     NotFinite,
-    /// The store is for another grid.
+    /// Store and grid have different dimensions.
     #[error("values for {store:?} voxels on a grid of {grid:?}")]
     Dims {
         /// Voxels along each axis of the store.
@@ -31,7 +31,7 @@ pub enum VoxelmapError {
         /// And of the grid.
         grid: [u32; 3],
     },
-    /// Each cell has a bend, or none has.
+    /// The number of bends is neither 0 nor that of the cells.
     #[error("{bends} bends for {cells} cells of voxels")]
     Bends {
         /// Bends given.
@@ -39,13 +39,13 @@ pub enum VoxelmapError {
         /// Bends needed.
         cells: usize,
     },
-    /// σ means nothing.
+    /// σ is invalid.
     #[error("the value of one step must be positive and finite, not {0} m")]
     Sigma(f32),
-    /// An error bound means nothing.
+    /// An error bound is invalid.
     #[error("error bounds must be finite and not negative, near not above far: {0:?}")]
     Accuracy(Accuracy),
-    /// The solid must lie where values are interpolated.
+    /// The solid leaves the box between the outermost voxel centres.
     #[error("the solid {0:?} does not lie between the outermost voxel centres of the grid")]
     Solid(Aabb),
 }

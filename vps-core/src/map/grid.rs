@@ -13,22 +13,22 @@ pub struct Grid {
     per_metre: f32,
     dims: [u32; 3],
     bounds: Aabb,
-    // The rest is kept because every query asks for it at every point.
+    // Precomputed, since queries need them for every point.
     center_bounds: Aabb,
-    /// Along each axis the last voxel with a next one.
+    /// Along each axis the last voxel that has a next one.
     last_corner: Vec3,
 }
 
 /// Why a [`Grid`] was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
-    /// A voxel has no size.
+    /// The voxel size is invalid.
     #[error("the voxel size must be positive and finite, not {0} m")]
     VoxelSize(f32),
-    /// The grid lies nowhere.
+    /// The origin is not finite.
     #[error("the origin of the grid is not finite: {0}")]
     Origin(Vec3),
-    /// The grid has no voxel, or more than can be numbered.
+    /// The grid has no voxel, or too many to index.
     #[error("{0} x {1} x {2} voxels are none, or more than 2^31 in all or 2^23 along an axis")]
     Dims(u32, u32, u32),
 }
@@ -39,8 +39,8 @@ impl Grid {
     ///
     /// # Errors
     /// When the voxel size is not positive, the origin not finite, or the grid empty or larger
-    /// than 2^31 voxels, or than 2^23 along an axis, beyond which places between them are lost to
-    /// rounding.
+    /// than 2^31 voxels, or than 2^23 along an axis, beyond which positions between voxels are
+    /// lost to rounding.
     pub fn new(origin: Vec3, voxel_size: f32, dims: [u32; 3]) -> Result<Self, GridError> {
         if !(voxel_size > 0.0 && voxel_size.is_finite()) {
             return Err(GridError::VoxelSize(voxel_size));
@@ -82,7 +82,7 @@ impl Grid {
         self.voxel_size
     }
 
-    /// How many voxels fill a metre.
+    /// Voxels per metre, 1 / s.
     #[inline]
     pub(crate) fn per_metre(&self) -> f32 {
         self.per_metre
@@ -94,18 +94,18 @@ impl Grid {
         self.dims
     }
 
-    /// How many voxels there are.
+    /// The number of voxels.
     pub fn voxel_count(&self) -> usize {
         self.dims.iter().map(|&n| n as usize).product()
     }
 
-    /// The box the voxels fill.
+    /// The box of all voxels.
     #[inline]
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Position of a voxel in an array of all voxels: x runs fastest, then y, then z.
+    /// Index of a voxel in an array of all voxels: x fastest, then y, then z.
     #[inline]
     pub fn index(&self, voxel: [u32; 3]) -> usize {
         let [nx, ny, _] = self.dims.map(|n| n as usize);
@@ -121,7 +121,7 @@ impl Grid {
         self.origin() + (voxel + 0.5) * self.voxel_size
     }
 
-    /// The voxel that holds `point`, or the closest one for a point outside of the grid.
+    /// The voxel that contains `point`, or the closest one for a point outside of the grid.
     #[inline]
     pub fn voxel_at(&self, point: Vec3) -> [u32; 3] {
         self.clamped((point - self.origin()) * self.per_metre)
@@ -133,14 +133,14 @@ impl Grid {
         self.center_bounds
     }
 
-    /// The lowest of the eight voxels whose centres surround each point, and how far the point lies
-    /// between their centres along each axis, from 0 to 1. The points must lie in
+    /// The lowest of the eight voxels whose centres surround each point, and the position of the
+    /// point between their centres along each axis, from 0 to 1. The points must lie in
     /// [`center_bounds`](Self::center_bounds), and there must be two voxels along each axis.
     #[inline(always)]
     pub(crate) fn cells_at(&self, points: Vectors) -> (Voxels, Vectors) {
         let axis = |axis: usize, coordinates: f32x4| {
             let at = (coordinates - self.bounds.min[axis]) * self.per_metre - 0.5;
-            // From -0.5 on, and so from voxel 0 on.
+            // At least -0.5, so truncation yields voxel 0 or above.
             let corner = at
                 .fast_min(f32x4::splat(self.last_corner[axis]))
                 .fast_trunc_int();
@@ -150,7 +150,8 @@ impl Grid {
         (Voxels { x, y, z }, Vectors { x: u, y: v, z: w })
     }
 
-    /// Casting saturates, so a NaN becomes voxel 0 and no index leaves the grid.
+    /// The voxel at a position in voxels. The cast saturates, so a NaN becomes voxel 0 and no index leaves
+    /// the grid.
     #[inline]
     fn clamped(&self, at: Vec3) -> [u32; 3] {
         let clamp = |at: f32, count: u32| (at as u32).min(count - 1);
@@ -164,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn voxels_are_found_by_their_centres() {
+    fn voxels_contain_their_centres() {
         let grid = Grid::new(Vec3::new(-1.0, 2.0, 0.5), 0.25, [3, 4, 5]).unwrap();
         let mut expected_index = 0;
         for z in 0..5 {
@@ -180,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn points_outside_belong_to_the_border() {
+    fn points_outside_belong_to_border_voxels() {
         let grid = Grid::new(Vec3::ZERO, 1.0, [2, 2, 2]).unwrap();
         assert_eq!(grid.voxel_at(Vec3::splat(-9.0)), [0, 0, 0]);
         assert_eq!(grid.voxel_at(Vec3::splat(9.0)), [1, 1, 1]);
@@ -188,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_refused() {
+    fn invalid_grids_are_refused() {
         assert!(Grid::new(Vec3::ZERO, 0.0, [1, 1, 1]).is_err());
         assert!(Grid::new(Vec3::ZERO, f32::NAN, [1, 1, 1]).is_err());
         assert!(Grid::new(Vec3::NAN, 1.0, [1, 1, 1]).is_err());

@@ -1,4 +1,4 @@
-//! Voxelmaps: a regular grid, the store of its values, and the surface they describe.
+//! Voxelmaps: a regular grid, the store of its values, and the surface of the solid.
 
 mod accuracy;
 mod error;

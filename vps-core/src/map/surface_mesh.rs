@@ -1,4 +1,4 @@
-//! The surface of a voxelmap as a mesh, to look at.
+//! The surface of a voxelmap as a mesh, for display.
 
 use alloc::vec::Vec;
 
@@ -6,8 +6,8 @@ use glamx::Vec3;
 
 use crate::map::voxelmap::Voxelmap;
 
-/// Squares over vertices in metres, in the frame of the map, counter-clockwise seen from outside. They
-/// need not be flat.
+/// Quadrilaterals over vertices in metres, in the frame of the map, counter-clockwise seen from outside.
+/// They need not be planar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceMesh {
     /// In metres.
@@ -17,13 +17,13 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
-    /// Each square as two triangles.
+    /// Each quadrilateral as two triangles.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
         self.squares.iter().flat_map(halves)
     }
 
-    /// The edges of the squares, each once.
+    /// The edges of the quadrilaterals, each once.
     pub fn edges(&self) -> Vec<[u32; 2]> {
         let around = |&[a, b, c, d]: &[u32; 4]| [[a, b], [b, c], [c, d], [d, a]];
         let edges = self.squares.iter().flat_map(around);
@@ -34,32 +34,31 @@ impl SurfaceMesh {
     }
 }
 
-/// No vertex.
-const NONE: u32 = u32::MAX;
+/// Index of a missing vertex.
+const NO_VERTEX: u32 = u32::MAX;
 
 impl Voxelmap<'_> {
-    /// The surface where the field is zero, by surface nets: a vertex in every cell of eight voxel
-    /// centres with both signs, a square across every edge between two centres that differ in sign.
-    /// Visits all voxels.
+    /// The zero level set by surface nets: a vertex in every cell of eight voxel centres with both signs,
+    /// and a quadrilateral across every edge between two centres that differ in sign. Visits all voxels.
     pub fn surface_mesh(&self) -> SurfaceMesh {
         let grid = self.grid();
         let [nx, ny, nz] = grid.dims();
         let mut mesh = SurfaceMesh::default();
-        // The vertices of the cells of two layers are enough.
-        let layer = || alloc::vec![NONE; nx as usize * ny as usize];
+        // Vertices of two layers of cells.
+        let layer = || alloc::vec![NO_VERTEX; nx as usize * ny as usize];
         let (mut below, mut here) = (layer(), layer());
         let at = |x: u32, y: u32| y as usize * nx as usize + x as usize;
         for z in 0..nz.saturating_sub(1) {
             for y in 0..ny.saturating_sub(1) {
                 for x in 0..nx.saturating_sub(1) {
                     let vertex = self.vertex_in_cell([x, y, z]);
-                    here[at(x, y)] = vertex.map_or(NONE, |vertex| {
+                    here[at(x, y)] = vertex.map_or(NO_VERTEX, |vertex| {
                         mesh.vertices.push(vertex);
                         mesh.vertices.len() as u32 - 1
                     });
                 }
             }
-            // Edges along x and y in this layer lie between it and the one below; edges along z in it.
+            // Edges along x and y lie between this layer of cells and the one below, edges along z within it.
             for y in 0..ny.saturating_sub(1) {
                 for x in 0..nx.saturating_sub(1) {
                     let cells = |[dx, dy]: [u32; 2], layer: &[u32]| {
@@ -67,7 +66,7 @@ impl Voxelmap<'_> {
                         if is_there {
                             layer[at(x - dx, y - dy)]
                         } else {
-                            NONE
+                            NO_VERTEX
                         }
                     };
                     let around = [
@@ -91,7 +90,7 @@ impl Voxelmap<'_> {
                         ],
                     ];
                     for (axis, mut square) in around.into_iter().enumerate() {
-                        if square.contains(&NONE) {
+                        if square.contains(&NO_VERTEX) {
                             continue;
                         }
                         let mut end = [x, y, z];
@@ -113,8 +112,8 @@ impl Voxelmap<'_> {
         mesh
     }
 
-    /// The mean of where the field changes sign along the edges of a cell, whose first corner is a
-    /// voxel's centre.
+    /// The mean of the zero crossings along the edges of a cell, whose first corner is the centre of a
+    /// voxel.
     fn vertex_in_cell(&self, [x, y, z]: [u32; 3]) -> Option<Vec3> {
         let corner = |i: u32| [x + (i & 1), y + (i >> 1 & 1), z + (i >> 2 & 1)];
         let values = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| self.center_penetration(corner(i)));

@@ -15,8 +15,7 @@ use crate::storage::Storage;
 ///
 /// With σ = s, the voxel size, the values are layers; with σ = λ = 10^-p they are distances
 /// truncated to the precision p (eq. 1); with σ = 1 m they are floating-point distances. A map is
-/// sampled through one of its views, which differ in what they make of a point between the
-/// centres: [`local`](Self::local), [`linear`](Self::linear) and [`trilinear`](Self::trilinear).
+/// sampled through one of its views, which differ in the value between the centres: [`local`](Self::local), [`linear`](Self::linear) and [`trilinear`](Self::trilinear).
 #[derive(Clone, Debug)]
 pub struct Voxelmap<'a> {
     grid: Grid,
@@ -27,24 +26,23 @@ pub struct Voxelmap<'a> {
     bends: Storage<'a, u8>,
 }
 
-/// A bend that is not known.
+/// The code of an unknown curvature bound.
 pub const UNKNOWN_BEND: u8 = u8::MAX;
 
-/// How many steps of a bend are the voxel size.
+/// The number of steps of a curvature bound that make up the voxel size.
 pub const BEND_STEPS: f32 = 127.0;
 
 impl<'a> Voxelmap<'a> {
-    /// A map over `grid` with the values of `store`, each worth `sigma` metres; `solid` is a box
-    /// around the mesh the map was made from, and lies between the outermost voxel centres.
+    /// A map over `grid` with the values of `store` in units of `sigma` metres. `solid` is a box around the
+    /// mesh the map was made from, and lies between the outermost voxel centres.
     ///
-    /// `bends` says for each cell of 8 x 8 x 8 voxels (x first, then y, then z) how little the field
-    /// bends in it and in the cells around it: in steps of s / 127, a bound on how much any value
-    /// there is below the middle of its two neighbours along an axis, doubled, and on how far any
-    /// square of four neighbours is from a plane; 255 where it is not known. It makes queries
-    /// faster, and must be true; without any, nothing is known.
+    /// `bends` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z), valid
+    /// in it and in the cells around it. In steps of s / 127, it bounds from above the second differences
+    /// of the values along an axis, and the deviation from a plane of any square of four neighbours; 255
+    /// where it is unknown. It makes queries faster, and must be correct. It may be empty.
     ///
     /// # Errors
-    /// When the parts do not fit together.
+    /// When the parts are inconsistent.
     pub fn new(
         grid: Grid,
         sigma: f32,
@@ -101,7 +99,7 @@ impl<'a> Voxelmap<'a> {
         &self.grid
     }
 
-    /// What one step of a value is worth in metres: s for layers, λ for scaled distances (eq. 4).
+    /// Metres of one step of a value: s for layers, λ for scaled distances (eq. 4).
     #[inline]
     pub fn sigma(&self) -> f32 {
         self.sigma
@@ -113,30 +111,30 @@ impl<'a> Voxelmap<'a> {
         self.solid
     }
 
-    /// What is known about the error of the values.
+    /// Error bounds of the values.
     #[inline]
     pub fn accuracy(&self) -> Accuracy {
         self.accuracy
     }
 
-    /// Where the values v are; positive inside.
+    /// The values v; positive inside.
     #[inline]
     pub fn store(&self) -> &Store<'a> {
         &self.store
     }
 
-    /// How much the field bends, cell by cell: see [`new`](Self::new).
+    /// The curvature bounds of the cells: see [`new`](Self::new).
     pub fn bends(&self) -> &[u8] {
         &self.bends
     }
 
-    /// The bends around voxels in metres, enormous where they are not known (but finite: over no way
-    /// at all nothing bends).
+    /// The curvature bounds around voxels in metres. Unknown ones are huge but finite, so that times a
+    /// distance of zero they give zero.
     #[inline(always)]
     pub(crate) fn bends_at(&self, voxels: Voxels) -> f32x4 {
-        let enormous = f32x4::splat(f32::MAX);
+        let unknown = f32x4::splat(f32::MAX);
         if self.bends.is_empty() {
-            return enormous;
+            return unknown;
         }
         let cells = voxels
             .blocks(CELL.ilog2() as i32)
@@ -148,7 +146,7 @@ impl<'a> Voxelmap<'a> {
         let steps = f32x4::new(steps);
         let is_unknown = steps.simd_eq(f32x4::splat(f32::from(UNKNOWN_BEND)));
         is_unknown.select(
-            enormous,
+            unknown,
             steps * (self.grid.voxel_size() * (1.0 / BEND_STEPS)),
         )
     }

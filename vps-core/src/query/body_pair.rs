@@ -9,7 +9,7 @@ use crate::query::contact::Contact;
 use crate::query::posed::Query;
 use crate::shell::PointSphereTree;
 
-/// A body that can be a shell and a field, both in its own frame.
+/// A body with a shell and a field, both in its own frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'q, F> {
     /// The pointshell.
@@ -28,20 +28,20 @@ impl<'q> Body<'q, Trilinear<'q>> {
     }
 }
 
-/// Which of two bodies is the shell in the field of the other.
+/// Which of two bodies provides the shell for the field of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shells {
-    /// The one with fewer points, the first of two with as many: the paper's rule. But if the smaller
-    /// body may lie within the box of the other, and so its surface in the other's solid, it is that
-    /// one: no point of the other would be in it.
+    /// The body with fewer points, the first one if both have as many: the paper's rule. If the smaller
+    /// body may lie within the box of the other one, and thus in its solid, it is the smaller body: the
+    /// shell of the other one would not meet it.
     #[default]
     FewerPoints,
     /// The first body.
     First,
     /// The second body.
     Second,
-    /// One after the other: what only one of the two shells shows is not missed, such as an edge of
-    /// one body between the points of the other. Each counts half in a force.
+    /// Both, one after the other. Finds contacts that only one shell meets, such as an edge of one body
+    /// between the points of the other. Each counts half in a force.
     Both,
 }
 
@@ -59,12 +59,12 @@ pub enum Side {
 pub struct PairContact {
     /// The body whose shell it was found with.
     pub shell: Side,
-    /// Which point of that shell it is.
+    /// Index of the point in that shell.
     pub point: u32,
     /// Its position in metres in the frame of the first body.
     pub position: Vec3,
-    /// The direction the first body is pushed in, of length one, in its frame; the second is pushed
-    /// the other way.
+    /// Unit direction in which the first body is pushed, in its frame; the second is pushed in the
+    /// opposite one.
     pub push: Vec3,
     /// Its penetration in metres, positive inside.
     pub penetration: f32,
@@ -81,7 +81,7 @@ pub struct BodyPair<'q, A, B> {
 }
 
 impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
-    /// Two bodies; the pose takes coordinates of the second to those of the first.
+    /// Two bodies; the pose transforms coordinates of the second to those of the first.
     pub fn new(first: Body<'q, A>, second: Body<'q, B>, second_to_first: Pose3) -> Self {
         Self {
             first,
@@ -92,49 +92,49 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         }
     }
 
-    /// With other shells than by the paper's rule.
+    /// Selects the shells.
     pub fn with_shells(self, shells: Shells) -> Self {
         Self { shells, ..self }
     }
 
-    /// Also gives points that are up to `margin` metres away from the other solid.
+    /// Speculative distance: points up to `margin` metres outside of the other solid count as contacts
+    /// too.
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
     }
 
-    /// The query for the first body's shell in the field of the second.
+    /// The query of the first body's shell in the field of the second.
     pub fn first_in_second(&self) -> Query<'_, B> {
         let pose = self.second_to_first.inverse();
         Query::new(self.first.tree, &self.second.field, pose).with_margin(self.margin)
     }
 
-    /// The query for the second body's shell in the field of the first.
+    /// The query of the second body's shell in the field of the first.
     pub fn second_in_first(&self) -> Query<'_, A> {
         Query::new(self.second.tree, &self.first.field, self.second_to_first)
             .with_margin(self.margin)
     }
 
-    /// Calls `visit` with every contact, those of the first body's shell before those of the
-    /// second's.
+    /// Calls `visit` with every contact, those of the first shell before those of the second.
     pub fn for_each_contact(&self, mut visit: impl FnMut(PairContact)) {
-        let (first, second) = self.is_shell();
+        let (first, second) = self.uses_shells();
         if first {
             self.first_in_second()
-                .for_each_contact(|c| visit(self.of_first(&c)));
+                .for_each_contact(|c| visit(self.first_contact(&c)));
         }
         if second {
             self.second_in_first()
-                .for_each_contact(|c| visit(self.of_second(&c)));
+                .for_each_contact(|c| visit(self.second_contact(&c)));
         }
     }
 
     /// Whether the bodies touch.
     pub fn touches(&self) -> bool {
-        let (first, second) = self.is_shell();
+        let (first, second) = self.uses_shells();
         first && self.first_in_second().touches() || second && self.second_in_first().touches()
     }
 
-    /// The deepest contact, the first body's of equally deep ones.
+    /// The deepest contact; of equally deep ones that of the first shell.
     pub fn deepest(&self) -> Option<PairContact> {
         self.deepest_within(self.margin)
     }
@@ -145,9 +145,9 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     }
 
     /// Penalty force and torque on the first body about `center`, all in its frame; the second body
-    /// takes the opposite.
+    /// takes the opposite wrench.
     pub fn wrench_on_first(&self, center: Vec3, weight: Weight) -> Wrench {
-        let (first, second) = self.is_shell();
+        let (first, second) = self.uses_shells();
         let part = if first && second { 0.5 } else { 1.0 };
         let mut wrench = Wrench::default();
         if !self.second_to_first.is_finite() {
@@ -168,7 +168,8 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         wrench
     }
 
-    fn is_shell(&self) -> (bool, bool) {
+    /// Whether the first shell is used, and whether the second one is.
+    fn uses_shells(&self) -> (bool, bool) {
         match self.shells {
             Shells::FewerPoints => {
                 let first = self.first_is_within().unwrap_or_else(|| {
@@ -182,12 +183,13 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         }
     }
 
-    /// Whether it is the first body that may lie within the other; none if neither may.
+    /// Whether the first or the second body may lie within the other one; `None` if neither may.
     fn first_is_within(&self) -> Option<bool> {
         let (first, second) = (&self.first, &self.second);
-        // What lies within another body has no larger ball around it.
-        let [of_first, of_second] = [first.tree, second.tree].map(|t| t.clusters()[0].radius);
-        let first_is_smaller = of_first < of_second;
+        // A body within another one has no larger bounding ball.
+        let [first_radius, second_radius] =
+            [first.tree, second.tree].map(|t| t.clusters()[0].radius);
+        let first_is_smaller = first_radius < second_radius;
         let may_be_within = if first_is_smaller {
             let to_second = self.second_to_first.inverse();
             second
@@ -197,25 +199,25 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         } else {
             let to_first = &self.second_to_first;
             let bounds = first.field.bounds();
-            of_second < of_first && bounds.may_hold(&second.tree.bounds(), to_first)
+            second_radius < first_radius && bounds.may_hold(&second.tree.bounds(), to_first)
         };
         may_be_within.then_some(first_is_smaller)
     }
 
     fn deepest_within(&self, margin: f32) -> Option<PairContact> {
-        let (first, second) = self.is_shell();
+        let (first, second) = self.uses_shells();
         let of_first = || self.first_in_second().with_margin(margin).deepest();
         let of_second = || self.second_in_first().with_margin(margin).deepest();
         let found_first = first.then(of_first).flatten();
         let found_second = second.then(of_second).flatten();
         match (found_first, found_second) {
-            (Some(a), Some(b)) if b.penetration > a.penetration => Some(self.of_second(&b)),
-            (Some(a), _) => Some(self.of_first(&a)),
-            (None, b) => b.map(|b| self.of_second(&b)),
+            (Some(a), Some(b)) if b.penetration > a.penetration => Some(self.second_contact(&b)),
+            (Some(a), _) => Some(self.first_contact(&a)),
+            (None, b) => b.map(|b| self.second_contact(&b)),
         }
     }
 
-    fn of_first(&self, contact: &Contact) -> PairContact {
+    fn first_contact(&self, contact: &Contact) -> PairContact {
         PairContact {
             shell: Side::First,
             point: contact.point,
@@ -225,7 +227,7 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         }
     }
 
-    fn of_second(&self, contact: &Contact) -> PairContact {
+    fn second_contact(&self, contact: &Contact) -> PairContact {
         PairContact {
             shell: Side::Second,
             point: contact.point,

@@ -1,89 +1,89 @@
-//! Collectors of contacts: all of them, whether there is one, the deepest.
+//! The collectors of all contacts, of any contact, and of the deepest one.
 
 use wide::f32x4;
 
 use crate::query::contact::Contact;
-use crate::query::search::{Found, Goal};
+use crate::query::search::{Collector, Found};
 
-/// All contacts, in order.
-pub(crate) struct All<V> {
+/// Visits all contacts, in the order of the points.
+pub(crate) struct AllContacts<V> {
     margin: f32,
     visit: V,
 }
 
-impl<V: FnMut(Contact)> All<V> {
+impl<V: FnMut(Contact)> AllContacts<V> {
     pub(crate) fn new(margin: f32, visit: V) -> Self {
         Self { margin, visit }
     }
 }
 
-impl<V: FnMut(Contact)> Goal for All<V> {
+impl<V: FnMut(Contact)> Collector for AllContacts<V> {
     const BEST_FIRST: bool = false;
-    const ALL: bool = true;
+    const COLLECTS_ALL: bool = true;
 
     #[inline(always)]
-    fn least_penetration(&self) -> f32 {
+    fn penetration_threshold(&self) -> f32 {
         -self.margin
     }
 
     #[inline(always)]
-    fn offer(&mut self, found: &Found<'_>) -> bool {
-        found.each().for_each(&mut self.visit);
+    fn add(&mut self, found: &Found<'_>) -> bool {
+        found.contacts().for_each(&mut self.visit);
         true
     }
 }
 
-/// Whether there is a contact.
-pub(super) struct Any {
+/// Finds out whether there is a contact.
+pub(super) struct AnyContact {
     pub(super) margin: f32,
     pub(super) found: bool,
 }
 
-impl Goal for Any {
+impl Collector for AnyContact {
     const BEST_FIRST: bool = true;
 
     #[inline(always)]
-    fn least_penetration(&self) -> f32 {
+    fn penetration_threshold(&self) -> f32 {
         -self.margin
     }
 
     #[inline(always)]
-    fn offer(&mut self, _found: &Found<'_>) -> bool {
+    fn add(&mut self, _found: &Found<'_>) -> bool {
         self.found = true;
         false
     }
 }
 
-/// The deepest contact.
-pub(crate) struct Deepest {
-    /// Its penetration; that of the shallowest there may be as long as none is found.
-    pub(crate) least: f32,
+/// Keeps the deepest contact, the first of equally deep ones.
+pub(crate) struct DeepestContact {
+    /// The penetration of the deepest contact so far, −margin before the first one; in metres.
+    pub(crate) threshold: f32,
     pub(crate) found: Option<Contact>,
 }
 
-impl Deepest {
+impl DeepestContact {
     pub(crate) fn new(margin: f32) -> Self {
         Self {
-            least: -margin,
+            threshold: -margin,
             found: None,
         }
     }
 }
 
-impl Goal for Deepest {
+impl Collector for DeepestContact {
     const BEST_FIRST: bool = true;
 
     #[inline(always)]
-    fn least_penetration(&self) -> f32 {
-        self.least
+    fn penetration_threshold(&self) -> f32 {
+        self.threshold
     }
 
     #[inline(always)]
-    fn offer(&mut self, found: &Found<'_>) -> bool {
-        let deep = found.counts & found.penetrations.simd_ge(f32x4::splat(self.least));
-        for contact in found.each_in(deep) {
+    fn add(&mut self, found: &Found<'_>) -> bool {
+        let deep = found.contact_mask & found.penetrations.simd_ge(f32x4::splat(self.threshold));
+        for contact in found.contacts_in(deep) {
             if contact.is_deeper_than(self.found.as_ref()) {
-                self.least = contact.penetration;
+                self.threshold = contact.penetration;
                 self.found = Some(contact);
             }
         }

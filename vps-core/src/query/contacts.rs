@@ -1,57 +1,56 @@
-//! The contact set, and the deepest of it.
+//! The contact set, its deepest contact, and whether there is any.
 
 use crate::field::DistanceField;
-use crate::query::collectors::{All, Any, Deepest};
+use crate::query::collectors::{AllContacts, AnyContact, DeepestContact};
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
 use crate::query::work::CountWork;
-use crate::simd::multiversion::dispatch;
+use crate::simd::multiversion::multiversion;
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Calls `visit` with every contact, in the order of the points.
     ///
-    /// Algorithm 1, with two differences that change no result: the tree is walked depth first
-    /// (which needs no queue), and a parent point is tested once, with the leaf it belongs to.
+    /// Algorithm 1, with two differences that do not change the result: the tree is traversed depth
+    /// first, which needs no queue, and a parent point is tested once, with its leaf.
     pub fn for_each_contact(&self, visit: impl FnMut(Contact)) {
-        self.find(All::new(self.margin, visit));
+        self.collect(AllContacts::new(self.margin, visit));
     }
 
-    /// Calls `visit` with every contact, testing every point (MPT99): what the tree is measured
-    /// against.
+    /// Calls `visit` with every contact, testing every point (MPT99): the reference for the tree.
     pub fn for_each_contact_flat(&self, visit: impl FnMut(Contact)) {
-        if !self.is_posed {
+        if !self.has_finite_pose {
             return;
         }
-        let mut all = All::new(self.margin, visit);
+        let mut all = AllContacts::new(self.margin, visit);
         let range = (0, self.tree.point_count() as u32);
-        dispatch(
+        multiversion(
             #[inline(always)]
-            || self.offer_points(range, &mut all),
+            || self.test_points(range, &mut all),
         );
     }
 
     /// Whether there is any contact; stops at the first.
     pub fn touches(&self) -> bool {
-        let mut any = Any {
+        let mut any = AnyContact {
             margin: self.margin,
             found: false,
         };
-        self.find_from_hint(&mut any);
+        self.collect_from_hint(&mut any);
         any.found
     }
 
     /// The contact with the largest penetration δ, the first of equally deep ones.
     ///
-    /// Branch and bound: clusters that cannot hold a deeper point are left out.
+    /// Branch and bound: clusters that cannot hold a deeper point are pruned.
     pub fn deepest(&self) -> Option<Contact> {
-        let mut deepest = Deepest::new(self.margin);
-        self.find_from_hint(&mut deepest);
+        let mut deepest = DeepestContact::new(self.margin);
+        self.collect_from_hint(&mut deepest);
         deepest.found
     }
 
-    /// The point of the shell with the largest penetration, however far outside: where the bodies
-    /// are closest if they are apart, the negative of its penetration being their separation
-    /// (section 2.2), and the [`deepest`](Self::deepest) if they are not. `None` only for a pose
+    /// The point of the shell with the largest penetration, however far outside. If the bodies are
+    /// apart it is the closest point, and the negative of its penetration their separation (section
+    /// 2.2); otherwise it is the [`deepest`](Self::deepest) contact. `None` only for a pose
     /// that is not finite.
     pub fn closest(&self) -> Option<Contact>
     where
@@ -60,10 +59,10 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         self.with_margin(f32::INFINITY).deepest()
     }
 
-    /// A single point, if it is in contact.
+    /// The contact of a single point, if it is one.
     pub(crate) fn test_point(&self, point: u32) -> Option<Contact> {
-        let mut found = Deepest::new(self.margin);
-        self.offer_points((point, point + 1), &mut found);
-        found.found
+        let mut deepest = DeepestContact::new(self.margin);
+        self.test_points((point, point + 1), &mut deepest);
+        deepest.found
     }
 }

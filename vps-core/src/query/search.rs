@@ -1,4 +1,4 @@
-//! How a query goes through the tree.
+//! Branch and bound through the point-sphere tree, for any collector.
 
 use glamx::Vec3;
 use wide::f32x4;
@@ -8,60 +8,60 @@ use crate::query::contact::Contact;
 use crate::query::posed::Query;
 use crate::query::work::CountWork;
 use crate::shell::{Cluster, MAX_LEVELS, PointSphereTree};
-use crate::simd::multiversion::dispatch;
+use crate::simd::multiversion::multiversion;
 use crate::simd::{LANES, Points, Vectors, first_lanes, lanes_in, padded};
 
-/// The cluster of all points: its level, and its number.
-pub(crate) const TOP: (u32, u32) = (1, 0);
+/// The cluster of all points: its level, and its index among all clusters.
+pub(crate) const ROOT: (u32, u32) = (1, 0);
 
-/// What a search looks for: contacts with a score of at least [`least`](Self::least).
-pub(crate) trait Goal {
-    /// Whether of several clusters the one with the highest score is looked at first; otherwise
-    /// the first one is, and contacts come in the order of the points.
+/// Takes the contacts of a search whose score is at least [`threshold`](Self::threshold), which prunes
+/// the tree.
+pub(crate) trait Collector {
+    /// Whether sibling clusters are visited by descending score. Otherwise they are visited in order,
+    /// and contacts come in the order of the points.
     const BEST_FIRST: bool;
 
-    /// Whether it is all contacts that matter, and no bound is asked for. What is likely to be in the
-    /// field as a whole is then looked at without bounding its parts first.
-    const ALL: bool = false;
+    /// Whether all contacts are collected. The children of a cluster that probably lies in the field as
+    /// a whole are then visited without bounding them.
+    const COLLECTS_ALL: bool = false;
 
-    /// Whether [`offer`](Self::offer) needs the way out of the solid at each contact.
-    const WAY_OUT: bool = false;
+    /// Whether [`add`](Self::add) needs the gradient of the field at each contact.
+    const NEEDS_GRADIENT: bool = false;
 
-    /// The highest score any contact in a disc (in the shell frame) can have, given upper bounds
-    /// of the penetrations.
-    fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
+    /// Upper bounds on the scores of the contacts in discs (in the shell frame), given upper bounds on
+    /// their penetrations.
+    fn score_bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
         let _ = discs;
         penetrations
     }
 
-    /// The score from which on contacts matter; it may rise with what was offered. The penetration,
-    /// unless [`bounds`](Self::bounds) says otherwise.
-    fn least(&self) -> f32 {
-        self.least_penetration()
+    /// Early-out value: the lowest score that matters. It may rise as contacts are added. A score is
+    /// the penetration unless [`score_bounds`](Self::score_bounds) is overridden.
+    fn threshold(&self) -> f32 {
+        self.penetration_threshold()
     }
 
-    /// The penetration from which on contacts matter.
-    fn least_penetration(&self) -> f32;
+    /// The lowest penetration that matters, in metres.
+    fn penetration_threshold(&self) -> f32;
 
     /// Takes contacts with at least that penetration. False ends the search.
-    fn offer(&mut self, found: &Found<'_>) -> bool;
+    fn add(&mut self, found: &Found<'_>) -> bool;
 }
 
-/// A cluster that is still to be looked at.
+/// A cluster to visit.
 #[derive(Clone, Copy)]
 struct Entry {
-    /// No contact below it has a higher score.
+    /// Upper bound on the scores of the contacts below it.
     bound: f32,
-    /// Which of all clusters.
+    /// Its index among all clusters.
     cluster: u32,
     level: u32,
-    /// How many of its children are done with.
-    done: u32,
+    /// The number of its children that were visited.
+    visited: u32,
 }
 
-/// The clusters that are still to be looked at, the next one on top. On each level there are
-/// [`LANES`] at most: those bounded together, of which the one in work may come back for more of its
-/// children.
+/// The clusters to visit, the next one on top. Of each level there are at most [`LANES`]: those that
+/// were bounded together, of which the current one may be pushed again for its remaining children.
 struct Stack {
     entries: [Entry; LANES * MAX_LEVELS],
     len: usize,
@@ -73,7 +73,7 @@ impl Stack {
             bound: 0.0,
             cluster: 0,
             level: 0,
-            done: 0,
+            visited: 0,
         }; LANES * MAX_LEVELS],
         len: 0,
     };
@@ -90,7 +90,7 @@ impl Stack {
         Some(self.entries[self.len])
     }
 
-    /// Pushes an entry, but below those from position `base` on that have no lower bound.
+    /// Pushes an entry below those from position `base` on whose bound is at least its own.
     #[inline(always)]
     fn insert(&mut self, base: usize, entry: Entry) {
         let mut at = self.len;
@@ -104,69 +104,71 @@ impl Stack {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// Searches the whole tree for a goal, and gives what became of it.
+    /// Searches the whole tree, and returns the collector.
     #[inline(always)]
-    pub(crate) fn find<G: Goal>(&self, mut goal: G) -> G {
-        dispatch(
+    pub(crate) fn collect<C: Collector>(&self, mut collector: C) -> C {
+        multiversion(
             #[inline(always)]
-            || self.search(TOP, &mut goal),
+            || self.search(ROOT, &mut collector),
         );
-        goal
+        collector
     }
 
-    /// The same for goals that may be offered a point twice.
+    /// Searches the whole tree after testing the hint, for collectors that accept a point twice.
     #[inline(always)]
-    pub(crate) fn find_from_hint<G: Goal>(&self, goal: &mut G) {
-        dispatch(
+    pub(crate) fn collect_from_hint<C: Collector>(&self, collector: &mut C) {
+        multiversion(
             #[inline(always)]
             || {
-                let goes_on = match self.hint {
-                    Some(point) if self.is_posed => self.offer_points((point, point + 1), goal),
+                let continues = match self.hint {
+                    Some(point) if self.has_finite_pose => {
+                        self.test_points((point, point + 1), collector)
+                    }
                     _ => true,
                 };
-                if goes_on {
-                    self.search(TOP, goal);
+                if continues {
+                    self.search(ROOT, collector);
                 }
             },
         );
     }
 
-    /// Branch and bound below a cluster, given its level and its number among all. Nothing is left
-    /// out that has the least score, so what is best is found whatever the order.
+    /// Branch and bound below a cluster, given its level and its index among all clusters. A contact
+    /// with the threshold as its score is not pruned, so the result does not depend on the order.
     #[inline(always)]
-    pub(crate) fn search<G: Goal>(&self, top: (u32, u32), goal: &mut G) {
+    pub(crate) fn search<C: Collector>(&self, top: (u32, u32), collector: &mut C) {
         let clusters = self.tree.clusters();
         self.descend(
             top,
             self.tree.level_count(),
-            goal,
+            collector,
             #[inline(always)]
-            |leaf, _, goal| {
+            |leaf, _, collector| {
                 let leaf = &clusters[leaf as usize];
-                self.offer_points((leaf.first, leaf.first + leaf.count), goal)
+                self.test_points((leaf.first, leaf.first + leaf.count), collector)
             },
         );
     }
 
-    /// Goes from a cluster down to level `last`, depth first, and calls `reached` there with the
-    /// clusters that may matter (their numbers among all) and their bounds, until it returns false.
+    /// Descends from a cluster to level `last`, depth first. Calls `visit` with the index and the bound of
+    /// each cluster there that may matter, until it returns false.
     #[inline(always)]
-    pub(crate) fn descend<G: Goal>(
+    pub(crate) fn descend<C: Collector>(
         &self,
         (level, cluster): (u32, u32),
         last: u32,
-        goal: &mut G,
-        mut reached: impl FnMut(u32, f32, &mut G) -> bool,
+        collector: &mut C,
+        mut visit: impl FnMut(u32, f32, &mut C) -> bool,
     ) {
-        if !self.is_posed {
+        if !self.has_finite_pose {
             return;
         }
         let (clusters, starts) = (self.tree.clusters(), self.tree.level_starts());
         let [bound, ..] = self
-            .bounds(&clusters[cluster as usize..], 1, goal)
+            .score_bounds(&clusters[cluster as usize..], 1, collector)
             .to_array();
-        // The first look costs little: most bodies of a scene are apart.
-        if bound.is_nan() || bound < goal.least() {
+        // Before the stack is set up: most bodies of a scene are apart.
+        if bound.is_nan() || bound < collector.threshold() {
             return;
         }
         let mut stack = Stack::EMPTY;
@@ -174,41 +176,45 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             bound,
             cluster,
             level,
-            done: 0,
+            visited: 0,
         });
         while let Some(entry) = stack.pop() {
-            let least = goal.least();
-            if entry.bound < least {
+            let threshold = collector.threshold();
+            if entry.bound < threshold {
                 continue;
             }
             if entry.level == last {
-                if !reached(entry.cluster, entry.bound, goal) {
+                if !visit(entry.cluster, entry.bound, collector) {
                     return;
                 }
                 continue;
             }
             let cluster = &clusters[entry.cluster as usize];
-            let left = cluster.count - entry.done;
-            let first = starts[entry.level as usize] + cluster.first + entry.done;
-            if left > LANES as u32 {
-                let done = entry.done + LANES as u32;
-                stack.push(Entry { done, ..entry });
+            let remaining = cluster.count - entry.visited;
+            let first = starts[entry.level as usize] + cluster.first + entry.visited;
+            if remaining > LANES as u32 {
+                let visited = entry.visited + LANES as u32;
+                stack.push(Entry { visited, ..entry });
             }
-            let bounds = if G::ALL && entry.bound - least > 2.0 * cluster.radius {
+            let bounds = if C::COLLECTS_ALL && entry.bound - threshold > 2.0 * cluster.radius {
                 f32x4::splat(entry.bound)
             } else {
-                self.bounds(&clusters[first as usize..], left.min(LANES as u32), goal)
+                self.score_bounds(
+                    &clusters[first as usize..],
+                    remaining.min(LANES as u32),
+                    collector,
+                )
             };
-            // What is no number is left out.
-            let kept = first_lanes(left) & bounds.simd_ge(f32x4::splat(least));
+            // The comparison prunes NaN as well.
+            let kept = first_lanes(remaining) & bounds.simd_ge(f32x4::splat(threshold));
             let base = stack.len;
             let child = |lane: usize| Entry {
                 bound: bounds.to_array()[lane],
                 cluster: first + lane as u32,
                 level: entry.level + 1,
-                done: 0,
+                visited: 0,
             };
-            if G::BEST_FIRST {
+            if C::BEST_FIRST {
                 lanes_in(kept).for_each(|lane| stack.insert(base, child(lane)));
             } else {
                 // The first one on top.
@@ -222,27 +228,27 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         }
     }
 
-    /// Bounds of the scores in the first `count` clusters, [`LANES`] at most.
+    /// Upper bounds on the scores in the first `count` clusters, at most [`LANES`].
     #[inline(always)]
-    fn bounds<G: Goal>(&self, clusters: &[Cluster], count: u32, goal: &G) -> f32x4 {
+    fn score_bounds<C: Collector>(&self, clusters: &[Cluster], count: u32, collector: &C) -> f32x4 {
         self.work.spheres(count);
         let (discs, penetrations) = self.penetration_bounds(clusters);
-        goal.bounds(&discs, f32x4::new(penetrations))
+        collector.score_bounds(&discs, f32x4::new(penetrations))
     }
 
-    /// Whether there may be a contact, by a look at the cluster of all points.
+    /// Whether there may be a contact, by the bound of the cluster of all points.
     pub(crate) fn may_touch(&self) -> bool {
         self.work.spheres(1);
         let top = &self.tree.clusters()[..1];
-        self.is_posed
-            && dispatch(
+        self.has_finite_pose
+            && multiversion(
                 #[inline(always)]
                 || self.penetration_bounds(top).1[0] >= -self.margin,
             )
     }
 
-    /// The discs of the first [`LANES`] clusters in the shell frame, and bounds of the penetration in
-    /// them. Should there be fewer, the last is repeated.
+    /// The discs of the first [`LANES`] clusters in the shell frame, and upper bounds on the penetration
+    /// in them. If there are fewer, the last one is repeated.
     #[inline(always)]
     fn penetration_bounds(&self, clusters: &[Cluster]) -> (Discs, [f32; LANES]) {
         let [a, b, c, d] = padded(clusters, |four| {
@@ -265,7 +271,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             bulges: [a.2[1], b.2[1], c.2[1], d.2[1]],
             thickness: thickness.to_array(),
         }
-        .grown(self.ball_slack);
+        .grown(self.rounding_slack);
         let in_field = Discs {
             centers: self.to_field(centers).into(),
             normals: normals.rotated(&self.rotation).into(),
@@ -274,9 +280,14 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         (discs, self.field.penetration_bounds(&in_field))
     }
 
-    /// Tests points one after the other; the pose must be finite. False ends the search.
+    /// Tests a range of points and adds the contacts to the collector. The pose must be finite. False
+    /// ends the search.
     #[inline(always)]
-    pub(crate) fn offer_points<G: Goal>(&self, (first, end): (u32, u32), goal: &mut G) -> bool {
+    pub(crate) fn test_points<C: Collector>(
+        &self,
+        (first, end): (u32, u32),
+        collector: &mut C,
+    ) -> bool {
         let (points, normals) = (self.tree.points(), self.tree.normals());
         self.work.points(end - first);
         let mut next = first;
@@ -285,7 +296,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             let inward = Points::read(normals, next as usize);
             let in_field = self.to_field(positions.into()).into();
             let inward_in_field = Vectors::from(inward).rotated(&self.rotation).into();
-            let (penetrations, way_out) = if G::WAY_OUT {
+            let (penetrations, outward) = if C::NEEDS_GRADIENT {
                 let (penetrations, gradients) = self
                     .field
                     .penetrations_and_gradients(&in_field, &inward_in_field);
@@ -299,17 +310,17 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 (penetrations, Vectors::splat(Vec3::ZERO))
             };
             let penetrations = f32x4::new(penetrations);
-            let least = f32x4::splat(goal.least_penetration());
+            let threshold = f32x4::splat(collector.penetration_threshold());
             let found = Found {
                 tree: self.tree,
                 first: next,
-                counts: first_lanes(end - next) & penetrations.simd_ge(least),
+                contact_mask: first_lanes(end - next) & penetrations.simd_ge(threshold),
                 positions: positions.into(),
                 inward: inward.into(),
                 penetrations,
-                way_out,
+                outward,
             };
-            if found.counts.any() && !goal.offer(&found) {
+            if found.contact_mask.any() && !collector.add(&found) {
                 return false;
             }
             next += LANES as u32;
@@ -321,28 +332,30 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 /// Points that were tested together.
 pub(crate) struct Found<'t> {
     tree: &'t PointSphereTree<'t>,
-    /// The first one's number.
+    /// Index of the first point.
     pub(crate) first: u32,
-    /// Which of them are contacts.
-    pub(crate) counts: f32x4,
-    /// In the shell frame, and so the normals.
+    /// The lanes that hold contacts.
+    pub(crate) contact_mask: f32x4,
+    /// Positions in metres, in the shell frame.
     pub(crate) positions: Vectors,
+    /// Unit inward normals of the shell, in the shell frame.
     pub(crate) inward: Vectors,
+    /// In metres, positive inside.
     pub(crate) penetrations: f32x4,
-    /// How much shallower a point is, per metre it is moved; zero unless the goal asks for it.
-    pub(crate) way_out: Vectors,
+    /// −∇V in the shell frame; zero unless the collector needs gradients.
+    pub(crate) outward: Vectors,
 }
 
 impl Found<'_> {
-    /// The contacts one by one, in order.
+    /// The contacts, in the order of the points.
     #[inline(always)]
-    pub(crate) fn each(&self) -> impl Iterator<Item = Contact> {
-        self.each_in(self.counts)
+    pub(crate) fn contacts(&self) -> impl Iterator<Item = Contact> {
+        self.contacts_in(self.contact_mask)
     }
 
-    /// Those of the given lanes.
+    /// The contacts of the given lanes.
     #[inline(always)]
-    pub(crate) fn each_in(&self, lanes: f32x4) -> impl Iterator<Item = Contact> {
+    pub(crate) fn contacts_in(&self, lanes: f32x4) -> impl Iterator<Item = Contact> {
         lanes_in(lanes).map(
             #[inline(always)]
             |lane| self.contact(lane),

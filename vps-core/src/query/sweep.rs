@@ -9,16 +9,16 @@ use crate::query::posed::Query;
 use crate::shell::PointSphereTree;
 use crate::simd::{LANES, Points};
 
-/// A pointshell that moves through a distance field during a step: on a straight line, turning at
-/// a constant rate about the origin of its frame. Finds what a query at the end of the step would
-/// miss because the body went through.
+/// A pointshell that moves through a distance field during a step: on a straight line, rotating at a
+/// constant rate about the origin of its frame. Finds contacts that a query at the end of the step
+/// would miss because the body tunnelled through.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'q, F: ?Sized> {
     tree: &'q PointSphereTree<'q>,
     field: &'q F,
     start: Pose3,
     /// From start to end.
-    way: Vec3,
+    translation: Vec3,
     axis: Vec3,
     angle: f32,
 }
@@ -26,31 +26,35 @@ pub struct Sweep<'q, F: ?Sized> {
 /// The first contact of a [`Sweep`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// When, from 0 at the start to 1 at the end. Never later than the true time.
+    /// Time of impact from 0 at the start to 1 at the end, never later than the exact one.
     pub time: f32,
-    /// The pose then, from shell to field coordinates.
+    /// The pose at that time, from shell to field coordinates.
     pub shell_to_field: Pose3,
-    /// The point of the shell that is closest then; its penetration is negative as long as there
-    /// is a gap.
+    /// The closest point of the shell at that time; its penetration is negative if there is still a
+    /// gap.
     pub closest: Contact,
 }
 
-/// How often a step is halved at most.
-const MOST_HALVINGS: u32 = 22;
+/// The largest number of times a step is halved.
+const MAX_HALVINGS: u32 = 22;
 
 impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
-    /// A motion from one pose to another; both take shell coordinates to field coordinates. The
-    /// body turns the shorter way round.
+    /// A motion from one pose to another; both transform shell coordinates to field coordinates. Of
+    /// the two rotations between them the one with the smaller angle is taken.
     pub fn new(tree: &'q PointSphereTree<'q>, field: &'q F, start: Pose3, end: Pose3) -> Self {
-        let turn = end.rotation * start.rotation.inverse();
+        let rotation = end.rotation * start.rotation.inverse();
         // Of the two quaternions of a rotation the one with the smaller angle.
-        let turn = if turn.w < 0.0 { -turn } else { turn };
-        let (axis, angle) = turn.normalize().to_axis_angle();
+        let rotation = if rotation.w < 0.0 {
+            -rotation
+        } else {
+            rotation
+        };
+        let (axis, angle) = rotation.normalize().to_axis_angle();
         Self {
             tree,
             field,
             start,
-            way: end.translation - start.translation,
+            translation: end.translation - start.translation,
             axis,
             angle,
         }
@@ -58,10 +62,10 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
 
     /// The pose at a time from 0 to 1.
     pub fn pose_at(&self, time: f32) -> Pose3 {
-        let turn = Quat::from_axis_angle(self.axis, self.angle * time);
+        let rotation = Quat::from_axis_angle(self.axis, self.angle * time);
         Pose3::from_parts(
-            self.start.translation + self.way * time,
-            turn * self.start.rotation,
+            self.start.translation + self.translation * time,
+            rotation * self.start.rotation,
         )
     }
 
@@ -69,13 +73,12 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
     /// `tolerance` metres of motion; `None` if none is during the whole motion, or the motion is
     /// not finite.
     ///
-    /// Halves the step and leaves out the halves during which, at their middle and with all balls
-    /// and points grown by how far they move until its ends, nothing touches. Costs about two
-    /// tests for touch for each halving, all the way up to the first contact. A tolerance below a
-    /// four-millionth of the way is not reached.
+    /// Bisection: an interval is discarded if nothing touches at its middle with all balls and points
+    /// inflated by their motion up to its ends. Costs about two touch tests a bisection, up to the first
+    /// contact. A tolerance below a four-millionth of the motion is not reached.
     pub fn first_contact(&self, tolerance: f32) -> Option<Impact> {
-        // No point is faster, in metres a step.
-        let speed = self.way.length() + self.angle.abs() * self.tree.reach();
+        // Upper bound on the speed of any point, in metres a step.
+        let speed = self.translation.length() + self.angle.abs() * self.tree.reach();
         if !(speed.is_finite() && self.start.is_finite()) {
             return None;
         }
@@ -83,13 +86,13 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
         loop {
             let length = 1.0 / (1_u32 << depth) as f32;
             let start = index as f32 * length;
-            let field = Grown {
+            let field = Inflated {
                 field: self.field,
                 by: 0.5 * length * speed,
             };
             let middle = self.pose_at(start + 0.5 * length);
             if Query::new(self.tree, &field, middle).touches() {
-                if length * speed <= tolerance || depth == MOST_HALVINGS {
+                if length * speed <= tolerance || depth == MAX_HALVINGS {
                     let pose = self.pose_at(start);
                     return Query::new(self.tree, self.field, pose)
                         .closest()
@@ -103,7 +106,7 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
                 index *= 2;
                 continue;
             }
-            // On to the next part, as long as it can be.
+            // The next interval, as long as possible.
             index += 1;
             while index.is_multiple_of(2) && depth > 0 {
                 index /= 2;
@@ -116,13 +119,13 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
     }
 }
 
-/// A field whose solid is larger by a distance in metres.
-struct Grown<'f, F: ?Sized> {
+/// A field whose solid is inflated by a distance in metres.
+struct Inflated<'f, F: ?Sized> {
     field: &'f F,
     by: f32,
 }
 
-impl<F: DistanceField + ?Sized> DistanceField for Grown<'_, F> {
+impl<F: DistanceField + ?Sized> DistanceField for Inflated<'_, F> {
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
         self.field.penetration_bound(point, self.by)
     }

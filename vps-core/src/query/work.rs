@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-/// What a query had to look at, for those who ask: see
+/// Counters of the clusters and points that a query tested: see
 /// [`Query::counting`](crate::Query::counting).
 #[derive(Debug, Default)]
 pub struct Work {
@@ -11,7 +11,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Clusters whose ball was held against the field.
+    /// Clusters whose penetration was bounded.
     pub fn spheres(&self) -> u64 {
         self.spheres.get()
     }
@@ -22,11 +22,11 @@ impl Work {
     }
 }
 
-/// Who counts what a query looks at: a [`Work`], or `()`, which counts nothing and costs nothing.
+/// A counter of the work of a query: a [`Work`], or `()`, which counts nothing and costs nothing.
 pub trait CountWork {
-    /// So many more spheres.
+    /// Adds `count` spheres.
     fn spheres(&self, _count: u32) {}
-    /// So many more points.
+    /// Adds `count` points.
     fn points(&self, _count: u32) {}
 }
 

@@ -1,4 +1,4 @@
-//! A cluster of shell points, with the ball and the dish that hold them.
+//! A cluster of shell points, bounded by a ball and a paraboloid.
 
 use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
@@ -8,33 +8,32 @@ use wide::f32x4;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Cluster {
-    /// Centre X of a ball around all points below the cluster, in the shell frame.
+    /// Centre X of a ball around all points below the cluster, in metres in the shell frame.
     pub center: [f32; 3],
     /// Radius R of that ball in metres.
     pub radius: f32,
-    /// Unit normal of a plane through the centre; the points lie close to a dish on it, a disc that
-    /// may be bent like a bowl.
+    /// Unit normal of a plane through the centre. The points lie close to a paraboloid with this axis,
+    /// which is a disc if `bulge` is zero.
     pub normal: [f32; 3],
-    /// How far from the dish they lie at most, in metres along the normal.
+    /// The largest distance of the points from the paraboloid, in metres along the normal.
     pub thickness: f32,
-    /// How high above the centre the middle of the dish is, in metres along the normal.
+    /// Height of the apex above the centre, in metres along the normal.
     pub lift: f32,
-    /// How much the dish bends towards the normal, per metre: at a distance r from the line through
-    /// the centre along the normal it is lift + bulge × r² high.
+    /// Half curvature of the paraboloid, per metre, positive towards the normal: at a distance r from the
+    /// axis its height is lift + bulge × r².
     pub bulge: f32,
-    /// The first child: a cluster of the next level, counted from that level's start, or on the
-    /// leaf level a point.
+    /// The first child: the index of a cluster within the next level, or on the leaf level of a point.
     pub first: u32,
-    /// How many children follow each other from there.
+    /// The number of consecutive children.
     pub count: u32,
-    /// The point that stands for the whole cluster, P_1.
+    /// The point that represents the whole cluster, P_1.
     pub parent_point: u32,
-    /// The area of the surface its points stand for, in m².
+    /// The area of the surface that its points represent, in m².
     pub area: f32,
 }
 
 impl Cluster {
-    /// Centre and radius, normal and thickness, lift and bulge.
+    /// Centre and radius; normal and thickness; lift and bulge.
     #[inline(always)]
     pub(crate) fn disc(&self) -> (f32x4, f32x4, [f32; 2]) {
         let ([x, y, z], [u, v, w]) = (self.center, self.normal);
@@ -45,8 +44,8 @@ impl Cluster {
         )
     }
 
-    /// The square of how far a point is from the line through the centre along the normal, and how
-    /// high above the centre it is, in metres.
+    /// Cylindrical coordinates of a point: the squared distance from the axis in m², and the height above
+    /// the centre in metres along the normal.
     pub fn around(&self, point: Vec3) -> (f32, f32) {
         let normal = Vec3::from_array(self.normal);
         let from_center = point - Vec3::from_array(self.center);
@@ -54,7 +53,7 @@ impl Cluster {
         ((from_center - normal * height).length_squared(), height)
     }
 
-    /// How far from the dish a point is in metres along the normal.
+    /// Distance of a point from the paraboloid, in metres along the normal.
     pub fn off_dish(&self, point: Vec3) -> f32 {
         let (square, height) = self.around(point);
         (height - (self.lift + self.bulge * square)).abs()

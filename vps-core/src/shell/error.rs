@@ -3,10 +3,10 @@
 /// Why a [`PointSphereTree`](crate::PointSphereTree) was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TreeError {
-    /// A shell needs a point.
+    /// The shell is empty.
     #[error("the pointshell has no point")]
     NoPoints,
-    /// Each point has one normal and one area.
+    /// The numbers of points, normals and areas differ.
     #[error("{points} points but {normals} normals and {areas} areas")]
     Counts {
         /// Points given.
@@ -16,32 +16,33 @@ pub enum TreeError {
         /// Areas given.
         areas: usize,
     },
-    /// A coordinate is NaN or infinite.
+    /// A coordinate is not finite.
     #[error("point {0} is not finite")]
     Point(usize),
     /// A normal is not of length one.
     #[error("the normal of point {0} is not of length one")]
     Normal(usize),
-    /// An area is negative or no number.
+    /// An area is negative or not finite.
     #[error("the area of point {0} is not a finite number from 0 on")]
     Area(usize),
-    /// The area of a cluster is that of its points.
+    /// The area of a cluster is not the sum of those of its points.
     #[error("the area of cluster {0} is not that of its points")]
     ClusterArea(usize),
-    /// The plane of a cluster is none.
+    /// The normal of a cluster is not of length one.
     #[error("the normal of cluster {0} is not of length one")]
     ClusterNormal(usize),
-    /// Levels begin at 0, grow, and end with the last cluster; the top one holds one cluster.
+    /// The level starts must begin at 0, increase, and end with the number of clusters; the top level has
+    /// one cluster.
     #[error("the levels do not divide the clusters, or are more than 32")]
     Levels,
-    /// The children of a level's clusters must be the next level (or the points), each once and
-    /// in order.
+    /// The children of the clusters of a level must be the next level (or the points), each once and in
+    /// order.
     #[error("the children of cluster {0} are not the next in order")]
     Children(usize),
-    /// The parent point lies in another cluster.
+    /// The parent point belongs to another cluster.
     #[error("the parent point of cluster {0} is not below it")]
     ParentPoint(usize),
-    /// A ball, or the dish in it, leaves a point out.
+    /// A point lies outside of the ball or too far from the paraboloid.
     #[error("the ball and dish of cluster {cluster} do not hold point {point}")]
     Disc {
         /// The cluster.

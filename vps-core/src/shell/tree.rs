@@ -7,14 +7,13 @@ use crate::shell::cluster::Cluster;
 use crate::shell::error::TreeError;
 use crate::storage::Storage;
 
-/// The deepest tree there can be: 2^32 points with two children a cluster.
+/// The largest number of levels: 2^32 points with two children a cluster.
 pub const MAX_LEVELS: usize = 32;
 
-/// A pointshell ordered in a tree of clusters, each with a ball around its points
-/// (section 2.1.2).
+/// A pointshell in a tree of clusters, each with a ball around its points (section 2.1.2).
 ///
-/// Children of a cluster lie next to each other, and so do the points of a leaf. Every point
-/// belongs to exactly one leaf. All leaves are on the last level.
+/// The children of a cluster are consecutive, and so are the points of a leaf. Every point belongs to
+/// exactly one leaf. All leaves are on the last level.
 #[derive(Clone, Debug)]
 pub struct PointSphereTree<'a> {
     points: Storage<'a, [f32; 3]>,
@@ -27,14 +26,15 @@ pub struct PointSphereTree<'a> {
 }
 
 impl<'a> PointSphereTree<'a> {
-    /// A tree over `points` (metres, shell frame) with unit inward `normals` and the `areas` of the
-    /// surface they stand for (m²), all in the order of the leaves. `clusters` holds one level after the other from the top; level L is
-    /// `level_starts[L - 1]..level_starts[L]`, so there is one start more than levels.
+    /// A tree over `points` (metres, shell frame) with unit inward `normals` and the `areas` of the surface
+    /// they represent (m²), all in the order of the leaves. `clusters` holds one level after the other
+    /// from the top; level L is `level_starts[L - 1]..level_starts[L]`, so there is one start more than
+    /// levels.
     ///
-    /// Costs one pass over all points a level: all that a query relies on is checked here.
+    /// Checks all requirements of queries, in one pass over the points for each level.
     ///
     /// # Errors
-    /// When the parts are not such a tree.
+    /// When the parts do not form such a tree.
     pub fn new(
         points: Storage<'a, [f32; 3]>,
         normals: Storage<'a, [f32; 3]>,
@@ -109,7 +109,7 @@ impl<'a> PointSphereTree<'a> {
                 return Err(TreeError::Children(start + self.level(level).len() - 1));
             }
         }
-        // From here on every range of children is known to be sound.
+        // From here on all ranges of children are valid.
         for level in 1..=self.level_count() {
             let start = self.level_starts[level as usize - 1] as usize;
             for (i, cluster) in self.level(level).iter().enumerate() {
@@ -118,20 +118,20 @@ impl<'a> PointSphereTree<'a> {
                     return Err(TreeError::ParentPoint(start + i));
                 }
                 let center = Vec3::from_array(cluster.center);
-                // Bounds rely on it.
+                // Required by the bounds of queries.
                 if !is_unit(Vec3::from_array(cluster.normal), 1e-6) {
                     return Err(TreeError::ClusterNormal(start + i));
                 }
                 let outside = |&p: &usize| {
-                    // Written so that a NaN counts as outside.
+                    // A NaN counts as outside.
                     let inside = center.distance(self.point(p)) <= cluster.radius
                         && cluster.off_dish(self.point(p)) <= cluster.thickness;
                     !inside
                 };
                 let area: f64 = below.clone().map(|p| f64::from(self.areas[p])).sum();
-                // Written so that a NaN does not count as the same.
-                let is_same = (f64::from(cluster.area) - area).abs() <= 1e-4 * area;
-                if !is_same {
+                // A NaN does not count as equal.
+                let is_equal = (f64::from(cluster.area) - area).abs() <= 1e-4 * area;
+                if !is_equal {
                     return Err(TreeError::ClusterArea(start + i));
                 }
                 if let Some(point) = below.into_iter().find(outside) {
@@ -145,10 +145,10 @@ impl<'a> PointSphereTree<'a> {
         Ok(())
     }
 
-    /// The points below a cluster of a level, as a range of positions in the shell.
+    /// The points below a cluster of a level, as a range of indices.
     ///
     /// # Panics
-    /// If the cluster is not one of that level.
+    /// If the cluster does not belong to that level.
     pub fn points_below(&self, level: u32, cluster: &Cluster) -> core::ops::Range<usize> {
         let (mut first, mut last) = (cluster.first, cluster.first + cluster.count - 1);
         for below in level + 1..=self.level_count() {
@@ -160,8 +160,8 @@ impl<'a> PointSphereTree<'a> {
         first as usize..last as usize + 1
     }
 
-    /// What points, normals, areas, clusters and levels take in memory, and in a file but for its
-    /// alignment.
+    /// Size of points, normals, areas, clusters and levels in memory in bytes; the same in a file, without
+    /// padding.
     pub fn byte_len(&self) -> usize {
         size_of_val(&*self.points)
             + size_of_val(&*self.normals)
@@ -205,7 +205,7 @@ impl<'a> PointSphereTree<'a> {
         Vec3::from_array(self.normals[index])
     }
 
-    /// The area of the surface a point stands for, in m².
+    /// The area of the surface that a point represents, in m².
     #[inline]
     pub fn area(&self, index: usize) -> f32 {
         self.areas[index]
@@ -235,12 +235,12 @@ impl<'a> PointSphereTree<'a> {
         &self.clusters
     }
 
-    /// Where each level starts among the clusters, with the end of the last level behind.
+    /// The index of the first cluster of each level, followed by the number of clusters.
     pub fn level_starts(&self) -> &[u32] {
         &self.level_starts
     }
 
-    /// No point is further from the origin of the shell frame, in metres.
+    /// Upper bound on the distance of any point from the origin of the shell frame, in metres.
     #[inline]
     pub(crate) fn reach(&self) -> f32 {
         self.reach

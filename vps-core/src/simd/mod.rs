@@ -1,4 +1,4 @@
-//! Several points at a time in the registers of a processor, and the choice of its instructions.
+//! Arithmetic on several points at a time, and the choice of the instruction set at run time.
 
 mod lanes;
 pub(crate) mod multiversion;

@@ -1,17 +1,17 @@
-//! The one place that depends on the processor.
+//! Function multiversioning: the one module that depends on the processor, and the one with unsafe
+//! code.
 #![allow(unsafe_code)]
 
-/// Runs `work`, compiled for the widest registers of this processor that are known here.
+/// Runs `work` with the best supported instruction set of this processor.
 ///
-/// What is inlined into `work` is compiled twice: for the processor the crate is built for, and for
-/// x86-64 with AVX2 and its bit counting. Neither contracts nor reorders floating-point operations,
-/// so both give the same bits; which one runs is chosen at run time with `std`, and by the
-/// compiler's target without.
+/// All code inlined into `work` is compiled twice: for the target of the crate, and for x86-64 with
+/// AVX2 and bit manipulation. Neither version contracts or reorders floating-point operations, so
+/// both give the same bits. With `std` the version is chosen at run time, without it by the target.
 #[inline(always)]
-pub(crate) fn dispatch<R>(work: impl FnOnce() -> R) -> R {
+pub(crate) fn multiversion<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(all(feature = "std", target_arch = "x86_64", not(target_feature = "avx2")))]
     if has_avx2() {
-        // SAFETY: the processor has what the function is compiled for.
+        // SAFETY: the processor has the features the function is compiled for.
         return unsafe { avx2(work) };
     }
     work()
@@ -22,7 +22,7 @@ pub(crate) fn dispatch<R>(work: impl FnOnce() -> R) -> R {
 fn has_avx2() -> bool {
     extern crate std;
     #[cfg(test)]
-    if tests::NONE.load(core::sync::atomic::Ordering::Relaxed) {
+    if tests::BASELINE_ONLY.load(core::sync::atomic::Ordering::Relaxed) {
         return false;
     }
     use std::is_x86_feature_detected as has;
@@ -49,18 +49,19 @@ mod tests {
     use crate::store::{BRICK_VALUES, CellGroup, MIDDLE_VALUES, RefinedCell, mark_plain};
     use crate::*;
 
-    /// Whether nothing is taken from the processor but what the crate is built for.
-    pub(super) static NONE: AtomicBool = AtomicBool::new(false);
+    /// Whether only the target's instruction set is used.
+    pub(super) static BASELINE_ONLY: AtomicBool = AtomicBool::new(false);
 
     const RINGS: usize = 16;
-    const AROUND: usize = 32;
+    const POINTS_PER_RING: usize = 32;
 
     /// A bumpy ball: rings of points, four in a leaf, as a tree of three levels.
     fn shell() -> PointSphereTree<'static> {
         let (mut points, mut normals) = (Vec::new(), Vec::new());
-        for i in 0..RINGS * AROUND {
-            let up = core::f32::consts::PI * ((i / AROUND) as f32 + 0.5) / RINGS as f32;
-            let round = core::f32::consts::TAU * (i % AROUND) as f32 / AROUND as f32;
+        for i in 0..RINGS * POINTS_PER_RING {
+            let up = core::f32::consts::PI * ((i / POINTS_PER_RING) as f32 + 0.5) / RINGS as f32;
+            let round =
+                core::f32::consts::TAU * (i % POINTS_PER_RING) as f32 / POINTS_PER_RING as f32;
             let out = Vec3::new(up.sin() * round.cos(), up.cos(), up.sin() * round.sin());
             points.push((out * (1.0 + 0.1 * (7.0 * round).sin())).to_array());
             normals.push((-out).to_array());
@@ -86,9 +87,9 @@ mod tests {
             cluster.thickness = points.map(|p| cluster.off_dish(p)).fold(0.0, f32::max);
             cluster
         };
-        let all = RINGS * AROUND;
+        let all = RINGS * POINTS_PER_RING;
         let mut clusters = vec![cluster(0, RINGS, 0..all)];
-        for (size, children) in [(AROUND, AROUND / 4), (4, 4)] {
+        for (size, children) in [(POINTS_PER_RING, POINTS_PER_RING / 4), (4, 4)] {
             let parts = (0..all / size).map(|i| (i * children, i * size..(i + 1) * size));
             clusters.extend(parts.map(|(first, below)| cluster(first, children, below)));
         }
@@ -104,7 +105,7 @@ mod tests {
         .unwrap()
     }
 
-    /// Maps of three kinds, with values that mean nothing.
+    /// A sparse, a dense and a floating-point map of random values.
     fn maps(mut random: impl FnMut() -> u64) -> [Voxelmap<'static>; 3] {
         let dims = [20, 17, 30];
         let grid = Grid::new(Vec3::splat(-1.3), 0.13, dims).unwrap();
@@ -153,8 +154,8 @@ mod tests {
         })
     }
 
-    /// All that queries say, to the bit.
-    fn said(field: &impl DistanceField, tree: &PointSphereTree<'_>, pose: Pose3) -> String {
+    /// The results of all queries, to the bit.
+    fn results(field: &impl DistanceField, tree: &PointSphereTree<'_>, pose: Pose3) -> String {
         let work = Work::default();
         let query = Query::new(tree, field, pose)
             .with_margin(0.05)
@@ -175,10 +176,10 @@ mod tests {
     // Compares nothing on a processor without AVX2.
     proptest! {
         #[test]
-        fn all_instructions_give_the_same_bits(
+        fn all_instruction_sets_give_the_same_bits(
             seed in any::<u64>(),
-            way in prop::array::uniform3(-1.5_f32..1.5),
-            turn in prop::array::uniform3(-2.0_f32..2.0),
+            translation in prop::array::uniform3(-1.5_f32..1.5),
+            rotation in prop::array::uniform3(-2.0_f32..2.0),
         ) {
             let mut state = seed | 1;
             let random = || {
@@ -188,29 +189,29 @@ mod tests {
                 state ^= state << 17;
                 state
             };
-            let turn = Quat::from_scaled_axis(Vec3::from_array(turn));
-            let pose = Pose3::from_parts(Vec3::from_array(way), turn);
+            let rotation = Quat::from_scaled_axis(Vec3::from_array(rotation));
+            let pose = Pose3::from_parts(Vec3::from_array(translation), rotation);
             let tree = shell();
             let [sparse, dense, floats] = maps(random);
-            let say = || {
+            let all_results = || {
                 vec![
-                    said(&sparse.trilinear(), &tree, pose),
-                    said(&dense.trilinear(), &tree, pose),
-                    said(&dense.linear(), &tree, pose),
-                    said(&dense.local(), &tree, pose),
-                    said(&floats.trilinear(), &tree, pose),
-                    said(&Cuboid::new(Vec3::new(0.4, 0.7, 0.5)), &tree, pose),
-                    said(&Ball::new(0.6), &tree, pose),
-                    said(&Capsule::new(0.5, 0.3), &tree, pose),
-                    said(&Cylinder::new(0.5, 0.3), &tree, pose),
-                    said(&HalfSpace::new(Vec3::ONE), &tree, pose),
+                    results(&sparse.trilinear(), &tree, pose),
+                    results(&dense.trilinear(), &tree, pose),
+                    results(&dense.linear(), &tree, pose),
+                    results(&dense.local(), &tree, pose),
+                    results(&floats.trilinear(), &tree, pose),
+                    results(&Cuboid::new(Vec3::new(0.4, 0.7, 0.5)), &tree, pose),
+                    results(&Ball::new(0.6), &tree, pose),
+                    results(&Capsule::new(0.5, 0.3), &tree, pose),
+                    results(&Cylinder::new(0.5, 0.3), &tree, pose),
+                    results(&HalfSpace::new(Vec3::ONE), &tree, pose),
                 ]
             };
-            let widest = say();
-            NONE.store(true, Ordering::Relaxed);
-            let plain = say();
-            NONE.store(false, Ordering::Relaxed);
-            prop_assert_eq!(widest, plain);
+            let widest = all_results();
+            BASELINE_ONLY.store(true, Ordering::Relaxed);
+            let baseline = all_results();
+            BASELINE_ONLY.store(false, Ordering::Relaxed);
+            prop_assert_eq!(widest, baseline);
         }
     }
 }

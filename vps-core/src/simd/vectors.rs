@@ -6,7 +6,7 @@ use wide::{f32x4, i32x4};
 use crate::aabb::Aabb;
 use crate::simd::lanes::{LANES, padded};
 
-/// Coordinates of [`LANES`] points in metres, each axis by itself.
+/// Coordinates of [`LANES`] points in metres, as a structure of arrays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Points {
     /// All x.
@@ -28,11 +28,10 @@ impl Points {
         }
     }
 
-    /// Those of `points` from position `first` on; should there be fewer than lanes, the last is
-    /// repeated.
+    /// Reads [`LANES`] of `points` from index `first` on. If there are fewer, the last one is repeated.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no point from there on.
     #[inline(always)]
     pub fn read(points: &[[f32; 3]], first: usize) -> Self {
         padded(
@@ -59,7 +58,7 @@ impl Points {
     }
 }
 
-/// Vectors in registers.
+/// [`LANES`] vectors in SIMD registers.
 #[derive(Clone, Copy)]
 pub(crate) struct Vectors {
     pub(crate) x: f32x4,
@@ -91,7 +90,7 @@ impl Vectors {
         }
     }
 
-    /// Of all lanes.
+    /// The sum over all lanes.
     #[inline(always)]
     pub(crate) fn sum(self) -> Vec3 {
         let sum = |axis: f32x4| {
@@ -160,7 +159,7 @@ impl Vectors {
         }
     }
 
-    /// Masks of the coordinates that are less than those of another vector.
+    /// Masks of the coordinates that are smaller than those of another vector.
     #[inline(always)]
     pub(crate) fn is_less(self, than: Self) -> Self {
         Self {
@@ -170,13 +169,13 @@ impl Vectors {
         }
     }
 
-    /// With these as masks, the lanes of which any coordinate is chosen.
+    /// The lanes in which the mask of any coordinate is set; `self` holds masks.
     #[inline(always)]
     pub(crate) fn any(self) -> f32x4 {
         self.x | self.y | self.z
     }
 
-    /// With these as masks, what lanes of `yes` and `no` they choose, coordinate by coordinate.
+    /// Selects between `yes` and `no` coordinate by coordinate; `self` holds masks.
     #[inline(always)]
     pub(crate) fn select(self, yes: Self, no: Self) -> Self {
         Self {
@@ -186,7 +185,7 @@ impl Vectors {
         }
     }
 
-    /// Each coordinate, which must not be negative, with the sign of that of another vector.
+    /// Each coordinate, which must not be negative, with the sign of the same coordinate of `other`.
     #[inline(always)]
     pub(crate) fn with_signs_of(self, other: Self) -> Self {
         Self {
@@ -196,7 +195,7 @@ impl Vectors {
         }
     }
 
-    /// All turned by a rotation.
+    /// All vectors rotated.
     #[inline(always)]
     pub(crate) fn rotated(self, rotation: &Mat3) -> Self {
         Self::splat(rotation.x_axis)
@@ -205,7 +204,7 @@ impl Vectors {
             .plus(Self::splat(rotation.z_axis).times(self.z))
     }
 
-    /// The points of a box that are closest to these; the lowest corner for what is no number.
+    /// The closest points of a box; its lowest corner for a NaN.
     #[inline(always)]
     pub(crate) fn clamped(self, bounds: &Aabb) -> Self {
         let (min, max) = (Self::splat(bounds.min), Self::splat(bounds.max));
@@ -218,13 +217,13 @@ impl Vectors {
 }
 
 impl Vectors {
-    /// How far balls around these points may reach without leaving a box, negative outside of it.
+    /// The distance to the nearest face of a box, negative outside of the box.
     #[inline(always)]
-    pub(crate) fn room_in(self, bounds: &Aabb) -> f32x4 {
+    pub(crate) fn depth_in(self, bounds: &Aabb) -> f32x4 {
         let low = self.minus(Self::splat(bounds.min));
         let high = Self::splat(bounds.max).minus(self);
-        let least = |v: Self| v.x.fast_min(v.y).fast_min(v.z);
-        least(low).fast_min(least(high))
+        let smallest = |v: Self| v.x.fast_min(v.y).fast_min(v.z);
+        smallest(low).fast_min(smallest(high))
     }
 }
 
@@ -250,7 +249,7 @@ impl From<Vectors> for Points {
     }
 }
 
-/// Positions of voxels in a grid, in registers.
+/// Coordinates of [`LANES`] voxels in a grid, in SIMD registers.
 #[derive(Clone, Copy)]
 pub(crate) struct Voxels {
     pub(crate) x: i32x4,
@@ -259,7 +258,7 @@ pub(crate) struct Voxels {
 }
 
 impl Voxels {
-    /// Positions in an array of `dims` values, x fastest, then y, then z.
+    /// Indices in an array of `dims` values, x fastest, then y, then z.
     #[inline(always)]
     pub(crate) fn linear(self, dims: [u32; 3]) -> [usize; LANES] {
         let [nx, ny] = [i32x4::splat(dims[0] as i32), i32x4::splat(dims[1] as i32)];
@@ -272,7 +271,7 @@ impl Voxels {
         ]
     }
 
-    /// The blocks of `1 << bits` voxels along each axis they lie in.
+    /// The blocks of `1 << bits` voxels along each axis that contain the voxels.
     #[inline(always)]
     pub(crate) fn blocks(self, bits: i32) -> Self {
         Self {
@@ -282,7 +281,7 @@ impl Voxels {
         }
     }
 
-    /// Where in those blocks they lie, by the lowest bits of their positions.
+    /// The coordinates within those blocks: the bits of `mask`.
     #[inline(always)]
     pub(crate) fn within(self, mask: i32) -> Vectors {
         let mask = i32x4::splat(mask);

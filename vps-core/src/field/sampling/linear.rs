@@ -1,4 +1,4 @@
-//! The linear extrapolation from the centre of a voxel of eq. 5.
+//! Sampling by the value and the gradient of a voxel (eq. 5).
 
 use glamx::Vec3;
 
@@ -6,23 +6,23 @@ use super::HALF_DIAGONAL;
 use super::voxel_bound::bound_by_voxel;
 use crate::aabb::Aabb;
 use crate::field::distance_field::DistanceField;
-use crate::field::extrapolation::{direction_beyond, penetration_beyond};
+use crate::field::extrapolation::{extrapolated_direction, extrapolated_penetration};
 use crate::map::Voxelmap;
 use crate::simd::{LANES, Points};
 
 /// A [`Voxelmap`] sampled as in eq. 5: V(P) = V(C) + ∇V·(P − C) / s, where ∇V is the difference
 /// per voxel between the values on both sides of the centre C.
 ///
-/// Seven values are read a point. The error is the map's plus at most half the diagonal of a voxel
-/// and three times half an edge, (√3 + 3) s / 2, where the surface is sharp; over a flat part of it
-/// the map's alone (up to three times, since it is extrapolated). Jumps from voxel to voxel where
-/// the field bends.
+/// Reads seven values a point. Near sharp edges the error is that of the map plus at most half the
+/// diagonal of a voxel and three halves of an edge, (√3 + 3) s / 2. Over a planar part of the surface it
+/// is that of the map alone, up to three times because of the extrapolation. Discontinuous between
+/// voxels where the field is curved.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear<'m>(pub(crate) &'m Voxelmap<'m>);
 
 impl Voxelmap<'_> {
-    /// The map sampled as in eq. 5: the value of the voxel plus the way from its centre along the
-    /// gradient there.
+    /// The map sampled as in eq. 5: the value of the voxel plus its gradient times the offset
+    /// from its centre.
     #[inline]
     pub fn linear(&self) -> Linear<'_> {
         Linear(self)
@@ -33,24 +33,24 @@ impl DistanceField for Linear<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
         let map = self.0;
-        let inside = map.grid().bounds().clamp(point);
-        let voxel = map.grid().voxel_at(inside);
-        let from_center = (inside - map.grid().center(voxel)) / map.grid().voxel_size();
-        let at_border = map.center_penetration(voxel) + gradient(map, voxel).dot(from_center);
-        penetration_beyond(point, inside, &map.solid(), at_border)
+        let clamped = map.grid().bounds().clamp(point);
+        let voxel = map.grid().voxel_at(clamped);
+        let from_center = (clamped - map.grid().center(voxel)) / map.grid().voxel_size();
+        let at_clamped = map.center_penetration(voxel) + gradient(map, voxel).dot(from_center);
+        extrapolated_penetration(point, clamped, &map.solid(), at_clamped)
     }
 
     #[inline]
     fn inward_direction(&self, point: Vec3) -> Vec3 {
         let map = self.0;
-        let inside = map.grid().bounds().clamp(point);
-        let voxel = map.grid().voxel_at(inside);
+        let clamped = map.grid().bounds().clamp(point);
+        let voxel = map.grid().voxel_at(clamped);
         let direction = gradient(map, voxel).normalize_or_zero();
-        let at_border = map.center_penetration(voxel);
-        direction_beyond(point, inside, &map.solid(), at_border, direction)
+        let at_clamped = map.center_penetration(voxel);
+        extrapolated_direction(point, clamped, &map.solid(), at_clamped, direction)
     }
 
-    /// Those of the linear function of each point's voxel.
+    /// The gradients are those of the linear function of each point's voxel.
     fn penetrations_and_gradients(
         &self,
         points: &Points,
@@ -58,8 +58,8 @@ impl DistanceField for Linear<'_> {
     ) -> ([f32; LANES], Points) {
         let (map, mut gradients) = (self.0, Points::default());
         for lane in 0..LANES {
-            let inside = map.grid().bounds().clamp(points.get(lane));
-            let slope = gradient(map, map.grid().voxel_at(inside));
+            let clamped = map.grid().bounds().clamp(points.get(lane));
+            let slope = gradient(map, map.grid().voxel_at(clamped));
             gradients.set(lane, slope / map.grid().voxel_size());
         }
         (self.penetrations(points, normals), gradients)
@@ -77,13 +77,12 @@ impl DistanceField for Linear<'_> {
 
     #[inline]
     fn error_bound(&self) -> f32 {
-        // The value of the centre, and one and a half times the difference of two others.
+        // One error of the value at the centre, and three halves of that of a difference of two values.
         4.0 * self.0.accuracy().near_m + (HALF_DIAGONAL + 1.5) * self.0.grid().voxel_size()
     }
 }
 
-/// The difference of the penetration per voxel in metres, between the neighbours of a voxel; at the
-/// border of the grid between the voxel and its one neighbour.
+/// The gradient by central differences in metres per voxel; one-sided at the border of the grid.
 fn gradient(map: &Voxelmap<'_>, voxel: [u32; 3]) -> Vec3 {
     let dims = map.grid().dims();
     let slope = |axis: usize| {

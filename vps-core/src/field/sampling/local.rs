@@ -1,4 +1,4 @@
-//! The local penetration of eq. 4.
+//! Sampling by the value of a voxel and the local penetration in it (eq. 4).
 
 use glamx::Vec3;
 
@@ -6,13 +6,13 @@ use super::HALF_DIAGONAL;
 use super::voxel_bound::bound_by_voxel;
 use crate::aabb::Aabb;
 use crate::field::distance_field::DistanceField;
-use crate::field::extrapolation::penetration_beyond;
+use crate::field::extrapolation::extrapolated_penetration;
 use crate::map::Voxelmap;
 
 /// A [`Voxelmap`] sampled as in eq. 4: V(P) = n·e + vσ with e = C − P.
 ///
-/// One value is read a point. The error is the map's plus at most the diagonal of a voxel, √3 s:
-/// the centre C is up to half of it away, and so is the local part n·e. Jumps from voxel to voxel.
+/// Reads one value a point. The error is that of the map plus at most the diagonal of a voxel, √3 s: half
+/// of it by the distance to the centre C, half of it by the local part n·e. Discontinuous between voxels.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalPenetration<'m>(pub(crate) &'m Voxelmap<'m>);
 
@@ -37,11 +37,11 @@ impl DistanceField for LocalPenetration<'_> {
     #[inline]
     fn penetration(&self, point: Vec3, normal: Vec3) -> f32 {
         let map = self.0;
-        let inside = map.grid().bounds().clamp(point);
-        let voxel = map.grid().voxel_at(inside);
-        let to_center = map.grid().center(voxel) - inside;
-        let at_border = normal.dot(to_center) + map.center_penetration(voxel);
-        penetration_beyond(point, inside, &map.solid(), at_border)
+        let clamped = map.grid().bounds().clamp(point);
+        let voxel = map.grid().voxel_at(clamped);
+        let to_center = map.grid().center(voxel) - clamped;
+        let at_clamped = normal.dot(to_center) + map.center_penetration(voxel);
+        extrapolated_penetration(point, clamped, &map.solid(), at_clamped)
     }
 
     #[inline]

@@ -3,20 +3,20 @@
 use glamx::Vec3;
 use wide::f32x4;
 
-use super::error_model::Stored;
+use super::error_model::ErrorModel;
 use super::{HALF_DIAGONAL, SQRT_3};
 use crate::aabb::Aabb;
 use crate::field::discs::Discs;
 use crate::field::distance_field::DistanceField;
-use crate::field::extrapolation::{Beyond, direction_beyond};
-use crate::field::grid_border::{Border, Tangent};
+use crate::field::extrapolation::{Extrapolation, extrapolated_direction};
+use crate::field::grid_border::{GridBorder, LinearBound};
 use crate::map::{Grid, Voxelmap};
 use crate::simd::{LANES, Points, Vectors, Voxels};
 
 /// A [`Voxelmap`] sampled by trilinear interpolation.
 ///
-/// Eight values are read a point. The error is the map's plus at most half the diagonal of a
-/// voxel, √3/2 s; over a flat part of the surface it is the map's alone. Continuous.
+/// Reads eight values a point. The error is that of the map plus at most half the diagonal of a voxel,
+/// √3/2 s; over a planar part of the surface it is that of the map alone. Continuous.
 #[derive(Clone, Copy, Debug)]
 pub struct Trilinear<'m>(pub(crate) &'m Voxelmap<'m>);
 
@@ -42,49 +42,47 @@ impl Trilinear<'_> {
         self.0.grid()
     }
 
-    /// How far around a point in the grid, given its penetration, the field has the same sign, in
-    /// metres: what is interpolated nowhere changes by more than √(r² + 3/4 s²) over a distance r, and
-    /// by the errors of values; 0 where that says nothing.
+    /// Radius in metres around a point in the grid within which the field keeps its sign, given the
+    /// penetration at the point. Over a distance r the interpolated field changes by at most
+    /// √(r² + 3/4 s²) and the errors of values. 0 where nothing is known.
     pub fn sign_radius(&self, penetration: f32) -> f32 {
         let s = self.voxel_size();
-        // Around a place where it changes sign all values are near ones.
+        // Where the field changes its sign, all values around are in the narrow band.
         let error = self.value_error(penetration) + self.value_error(0.0);
         let change = (penetration.abs() - error).max(0.0);
         let square = (change * change - 0.75 * s * s).max(0.0);
         f32x4::splat(square).sqrt().to_array()[0]
     }
 
-    /// How far [`penetration`](DistanceField::penetration) at `point` may be from the exact one, in
-    /// metres. Within the grid that is the
-    /// [`overestimate_bound_at`](Self::overestimate_bound_at) there; outside of it, where distances may
-    /// be told too short, it is more by what the way through the closest point of the grid is longer.
+    /// The largest error of [`penetration`](DistanceField::penetration) at `point`, in metres. Within the
+    /// grid it is the [`overestimate_bound_at`](Self::overestimate_bound_at). Outside, where distances
+    /// may be underestimated, it is larger by the detour through the closest point of the grid.
     pub fn error_bound_at(&self, point: Vec3) -> f32 {
-        let way = self.0.grid().center_bounds().distance_outside(point);
+        let to_grid = self.0.grid().center_bounds().distance_outside(point);
         let sampled = self.sampled(Vectors::splat(point));
-        let at_border = -sampled.values.to_array()[0];
+        let at_clamped = -sampled.values.to_array()[0];
         let distance = self.signed_distance(point);
-        let short = if way > 0.0 {
-            way + at_border.max(0.0) - distance
+        let underestimate = if to_grid > 0.0 {
+            to_grid + at_clamped.max(0.0) - distance
         } else {
             0.0
         };
-        self.overestimate_bound_at(point) + short
+        self.overestimate_bound_at(point) + underestimate
     }
 
-    /// How much further away than it is the solid may seem to be at `point`, in metres: the
-    /// [signed distance](DistanceField::signed_distance) is more than the exact one by no more than
-    /// this, anywhere. It is the [error bound](DistanceField::error_bound) of the field close to the
-    /// surface, and what values may be off more ([`Accuracy::far_m`](crate::Accuracy::far_m)) beyond the narrow band; outside
-    /// of the grid that of the closest point in it.
+    /// The most by which the [signed distance](DistanceField::signed_distance) at `point` exceeds the
+    /// exact one, in metres. It is the [error bound](DistanceField::error_bound) of the field close to
+    /// the surface, and includes the larger error of values ([`Accuracy::far_m`](crate::Accuracy::far_m)) beyond the narrow band.
+    /// Outside of the grid it is that of the closest point of the grid.
     pub fn overestimate_bound_at(&self, point: Vec3) -> f32 {
         let sampled = self.sampled(Vectors::splat(point)).values.to_array()[0];
         HALF_DIAGONAL * self.voxel_size() + self.value_error(sampled)
     }
 
-    /// How far the values may be off that something is interpolated from.
+    /// The largest error of the values around a point, given the interpolated value.
     fn value_error(&self, interpolated: f32) -> f32 {
         let accuracy = self.0.accuracy();
-        // With one value beyond the band, what is made of it is no closer to zero than this.
+        // A value interpolated from one beyond the narrow band is no closer to zero than this.
         let reach = SQRT_3 * self.voxel_size() + accuracy.far_m + accuracy.near_m;
         if interpolated.abs() + reach <= accuracy.band_m {
             accuracy.near_m
@@ -93,62 +91,63 @@ impl Trilinear<'_> {
         }
     }
 
-    /// What is interpolated at the points.
+    /// Interpolates at the closest points of the grid.
     #[inline(always)]
     fn sampled(&self, points: Vectors) -> Sampled {
         let (grid, store) = (self.0.grid(), self.0.store());
-        let inside = points.clamped(&grid.center_bounds());
-        let (corners, between) = grid.cells_at(inside);
-        let (values, slopes) = store.interpolated(corners, between);
+        let clamped = points.clamped(&grid.center_bounds());
+        let (corners, fractions) = grid.cells_at(clamped);
+        let (values, slopes) = store.interpolated(corners, fractions);
         let sigma = f32x4::splat(self.0.sigma());
         Sampled {
             values: values * sigma,
             gradients: slopes.times(sigma * grid.per_metre()),
             corners,
-            inside,
-            way: points.minus(inside),
+            clamped,
+            offset: points.minus(clamped),
         }
     }
 
     /// Penetrations at the points.
     #[inline(always)]
     fn penetrations_at(&self, points: Vectors) -> f32x4 {
-        self.beyond(&self.sampled(points))
+        self.extrapolated(&self.sampled(points))
     }
 
-    /// Penetrations at the points something was interpolated for, in the grid and beyond.
+    /// Penetrations at the points of a sample, within the grid and outside.
     #[inline(always)]
-    fn beyond(&self, sampled: &Sampled) -> f32x4 {
-        let is_outside = sampled.way.dot(sampled.way).simd_gt(f32x4::ZERO);
+    fn extrapolated(&self, sampled: &Sampled) -> f32x4 {
+        let is_outside = sampled.offset.dot(sampled.offset).simd_gt(f32x4::ZERO);
         if is_outside.any() {
-            let beyond = Beyond::new(sampled.inside, sampled.way, &self.0.solid());
-            is_outside.select(beyond.penetrations(sampled.values), sampled.values)
+            let extrapolation =
+                Extrapolation::new(sampled.clamped, sampled.offset, &self.0.solid());
+            is_outside.select(extrapolation.penetrations(sampled.values), sampled.values)
         } else {
             sampled.values
         }
     }
 
-    /// Bounds of discs, the smallest of up to three.
+    /// Upper bounds for discs, the smallest of up to three.
     ///
-    /// The first needs nothing but that the exact penetration changes no faster than the place.
-    /// What is interpolated at a point is the average of the values around it, weighted so that
-    /// the average of their places is the point: as if each coordinate were rounded up or down at
-    /// random. Round those of two points a distance r apart by the same dice, and on average the
-    /// two places differ by no more than √3 r, nor than the square root of r² + 3/4 s² (their
-    /// difference takes, along each axis, one of two values s apart around the points' own). The
-    /// errors of values count only where the places differ, with a chance of at most √3 r / s.
+    /// The first is a Lipschitz bound: the exact penetration changes by at most the distance. The
+    /// interpolated value at a point is the average of the values around it, with weights for which the
+    /// average of their positions is the point, as if each coordinate were rounded up or down at random.
+    /// If the coordinates of two points a distance r apart are rounded by the same random numbers, the
+    /// two positions differ on average by at most √3 r, and by at most √(r² + 3/4 s²), since along each
+    /// axis their difference takes one of two values s apart around that of the points. Errors of values
+    /// count only where the positions differ, with a probability of at most √3 r / s.
     ///
-    /// The second uses that the disc is flat and that the map knows how much it bends. On the
-    /// straight way from the centre to a point r voxels away, the slope changes at each face
-    /// between voxels by no more than the bend, and there are no more than r / s + 1 of them along
-    /// an axis; between faces it changes by the twist of the squares. Together the point has no
-    /// more than the linear function at the centre gives it and (r² / 2 + √3 r + r²) bends. How that
-    /// goes on outside of the grid, [`Border`] tells.
+    /// The second is a curvature bound: the disc is thin, and the map bounds its second differences.
+    /// Along the line from the centre to a point r voxels away, the slope changes at each face between
+    /// voxels by at most the bound B, at no more than r + 1 faces along each axis, and between faces by
+    /// the twist of the squares. In total the point exceeds the linear function at the centre by at most
+    /// (r² / 2 + √3 r + r²) B. [`GridBorder`] continues it outside of the grid.
     ///
-    /// The third is for what lies outside of the grid. There what is sampled is no more than at the
-    /// closest point of the grid, so the first holds; see [`Beyond::bounds`] for how it falls. And as
-    /// no point of the solid is closer than its box, nor is what is sampled, but for its error: at the
-    /// closest point of the grid, and further on since the distance of the box grows as fast there.
+    /// The third is for points outside of the grid. The sampled value there is at most that at the closest
+    /// point of the grid, so the first bound holds; [`Extrapolation::bounds`] accounts for the decrease
+    /// with the distance. Since no point of the solid is closer than its box, the sampled value is also
+    /// bounded by the distance from the box, up to its error: at the closest point of the grid, and
+    /// outside as well, because the distance from the box grows as fast there.
     #[inline(always)]
     fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
@@ -159,72 +158,77 @@ impl Trilinear<'_> {
         let at_center = sampled.values;
 
         let voxels = radii * map.grid().per_metre();
-        let is_near = voxels.simd_le(f32x4::splat(MOST_VOXELS));
+        let is_in_reach = voxels.simd_le(f32x4::splat(CURVATURE_REACH));
         let gradients = sampled.gradients;
         let excess = (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
         let grid = map.grid().center_bounds();
-        let is_in_grid = centers.room_in(&grid).simd_ge(radii).all();
-        let (bent, is_bent_known, at_point) = if is_in_grid {
-            let bent = at_center + discs.rise(gradients, gradients.length()) + excess;
-            (bent, is_near, at_center)
+        let is_in_grid = centers.depth_in(&grid).simd_ge(radii).all();
+        let (curvature_bound, is_curvature_known, at_point) = if is_in_grid {
+            let bound = at_center + discs.rise(gradients, gradients.length()) + excess;
+            (bound, is_in_reach, at_center)
         } else {
-            let tangent = Tangent {
+            let linear = LinearBound {
                 value: at_center,
                 gradient: gradients,
                 excess,
             };
-            let border = Border::new(discs, sampled.inside, &grid, &map.solid());
-            let bent = border.bounds(discs, &tangent);
-            (bent, is_near & border.is_simple(), self.beyond(&sampled))
+            let border = GridBorder::new(discs, sampled.clamped, &grid, &map.solid());
+            let bound = border.bounds(discs, &linear);
+            (
+                bound,
+                is_in_reach & border.straddles_at_most_one_axis(),
+                self.extrapolated(&sampled),
+            )
         };
-        // The other bounds are no smaller then.
-        if (is_bent_known & bent.simd_le(at_point + radii)).all() {
-            return bent;
+        // The other bounds are no smaller in this case.
+        if (is_curvature_known & curvature_bound.simd_le(at_point + radii)).all() {
+            return curvature_bound;
         }
 
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
-        let way = smoothed.fast_min(radii * SQRT_3);
-        let chance = (radii * (SQRT_3 * map.grid().per_metre())).fast_min(f32x4::ONE);
-        let bound = Stored::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
-        let error = bound.error_at(at_center);
-        let by_way = bound.of(at_center + way + chance * error, chance);
-        let out = is_bent_known.select(bent.fast_min(by_way), by_way);
+        let change = smoothed.fast_min(radii * SQRT_3);
+        let probability = (radii * (SQRT_3 * map.grid().per_metre())).fast_min(f32x4::ONE);
+        let errors = ErrorModel::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
+        let error = errors.error_at(at_center);
+        let lipschitz_bound =
+            errors.upper_bound(at_center + change + probability * error, probability);
+        let bound =
+            is_curvature_known.select(curvature_bound.fast_min(lipschitz_bound), lipschitz_bound);
         if is_in_grid {
-            return out;
+            return bound;
         }
-        let beyond = Beyond::new(sampled.inside, sampled.way, &map.solid());
-        let is_outside = beyond.is_outside();
+        let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &map.solid());
+        let is_outside = extrapolation.is_outside();
         if !is_outside.any() {
-            return out;
+            return bound;
         }
-        // What is interpolated changes by no more than the way and this.
-        let at_border = at_center + error + (MOST_SMOOTHED * s + accuracy.far_m);
-        let by_border = beyond.bounds(at_border, radii);
+        // The interpolated value changes by at most the distance and these terms.
+        let at_clamped = at_center + error + (MAX_SMOOTHING * s + accuracy.far_m);
+        let exterior_bound = extrapolation.bounds(at_clamped, radii);
         let to_box = centers.minus(centers.clamped(&map.solid())).length();
-        let by_box = bound.of(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
-        is_outside.select(by_border.fast_min(by_box).fast_min(out), out)
+        let box_bound = errors.upper_bound(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
+        is_outside.select(exterior_bound.fast_min(box_bound).fast_min(bound), bound)
     }
 }
 
-/// The most by which the smaller of √(r² + 3/4 s²) and √3 r is more than r, in voxels.
-const MOST_SMOOTHED: f32 = 0.448_3;
+/// The most by which the smaller of √(r² + 3/4 s²) and √3 r exceeds r, in voxels.
+const MAX_SMOOTHING: f32 = 0.448_3;
 
-/// Up to how many voxels from a cell its bend is known.
-const MOST_VOXELS: f32 = 7.0;
+/// Distance from a cell, in voxels, up to which its curvature bound holds.
+const CURVATURE_REACH: f32 = 7.0;
 
-/// A field interpolated at the points of the box between the outermost centres that are closest to
-/// those asked for.
+/// The field interpolated at points clamped to the box between the outermost voxel centres.
 struct Sampled {
     /// Penetrations in metres.
     values: f32x4,
-    /// And their gradients, per metre.
+    /// Gradients of the penetrations, per metre.
     gradients: Vectors,
-    /// The lowest of the voxels around.
+    /// The lowest of the eight voxels around each point.
     corners: Voxels,
-    /// Where these points are.
-    inside: Vectors,
-    /// From there to those asked for, in metres.
-    way: Vectors,
+    /// The clamped points, in metres.
+    clamped: Vectors,
+    /// From the clamped points to the original ones, in metres.
+    offset: Vectors,
 }
 
 impl DistanceField for Trilinear<'_> {
@@ -233,13 +237,13 @@ impl DistanceField for Trilinear<'_> {
         self.penetrations_at(Vectors::splat(point)).to_array()[0]
     }
 
-    /// By differences of the interpolated field over a voxel on each side.
+    /// By central differences of the interpolated field over a voxel on each side.
     #[inline]
     fn inward_direction(&self, point: Vec3) -> Vec3 {
         let map = self.0;
-        let inside = map.grid().bounds().clamp(point);
+        let clamped = map.grid().bounds().clamp(point);
         let step = map.grid().voxel_size();
-        let (mut after, mut before) = (Points::splat(inside), Points::splat(inside));
+        let (mut after, mut before) = (Points::splat(clamped), Points::splat(clamped));
         after.x[0] += step;
         after.y[1] += step;
         after.z[2] += step;
@@ -249,11 +253,11 @@ impl DistanceField for Trilinear<'_> {
         let [after, before] = [after, before].map(|p| self.penetrations(&p, &p));
         let slope = |axis: usize| after[axis] - before[axis];
         let direction = Vec3::new(slope(0), slope(1), slope(2)).normalize_or_zero();
-        if inside == point {
+        if clamped == point {
             return direction;
         }
-        let at_border = self.penetration(inside, Vec3::ZERO);
-        direction_beyond(point, inside, &map.solid(), at_border, direction)
+        let at_clamped = self.penetration(clamped, Vec3::ZERO);
+        extrapolated_direction(point, clamped, &map.solid(), at_clamped, direction)
     }
 
     #[inline]
@@ -277,7 +281,7 @@ impl DistanceField for Trilinear<'_> {
         self.penetrations_at((*points).into()).to_array()
     }
 
-    /// Those of what is interpolated: the forces along them are the derivative of a potential.
+    /// The gradients are those of the interpolated field, so forces along them derive from a potential.
     #[inline(always)]
     fn penetrations_and_gradients(
         &self,
@@ -285,14 +289,14 @@ impl DistanceField for Trilinear<'_> {
         _normals: &Points,
     ) -> ([f32; LANES], Points) {
         let sampled = self.sampled((*points).into());
-        let is_outside = sampled.way.dot(sampled.way).simd_gt(f32x4::ZERO);
+        let is_outside = sampled.offset.dot(sampled.offset).simd_gt(f32x4::ZERO);
         if !is_outside.any() {
             return (sampled.values.to_array(), sampled.gradients.into());
         }
-        let beyond = Beyond::new(sampled.inside, sampled.way, &self.0.solid());
-        let penetrations = beyond.penetrations(sampled.values);
-        let gradients = beyond.gradients(sampled.values, sampled.gradients);
-        let chosen = |beyond: f32x4, within: f32x4| is_outside.select(beyond, within);
+        let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &self.0.solid());
+        let penetrations = extrapolation.penetrations(sampled.values);
+        let gradients = extrapolation.gradients(sampled.values, sampled.gradients);
+        let chosen = |outside: f32x4, inside: f32x4| is_outside.select(outside, inside);
         let gradients = Vectors {
             x: chosen(gradients.x, sampled.gradients.x),
             y: chosen(gradients.y, sampled.gradients.y),

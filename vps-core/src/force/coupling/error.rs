@@ -1,42 +1,43 @@
-//! Why a coupling is refused, and why a step is.
+//! The errors of a coupling and of its steps.
 
-/// Why there cannot be such a coupling.
+/// Why a coupling was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
-    /// A mass, a stiffness or a limit.
+    /// A mass, a stiffness or a limit is not positive and finite.
     #[error("{name} must be positive and finite, not {value}")]
     NotPositive {
-        /// Which.
+        /// Name of the parameter.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f32,
     },
-    /// A damping.
+    /// A damping is negative or not finite.
     #[error("{name} must be finite and not negative, not {value}")]
     Negative {
-        /// Which.
+        /// Name of the parameter.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f32,
     },
-    /// The inertia of a body.
+    /// The inertia is not symmetric and positive definite.
     #[error("the inertia must be symmetric and positive definite")]
     Inertia,
-    /// A place to start from.
+    /// The initial pose or the centre of the tool is not finite.
     #[error("pose and centre of the tool must be finite")]
     Pose,
 }
 
-/// Why a step was not made.
+/// Why a step was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
-    /// The device's pose is not finite, or further away than 32 bits can tell.
+    /// The device's pose is not finite, or out of the range of 32-bit numbers.
     #[error("the pose of the device is not finite")]
     Device,
     /// The contacts' force, torque or stiffness is not finite.
     #[error("the contact wrench is not finite")]
     Contact,
-    /// Not positive and finite, or so long that the tool would leave what 32 bits can tell.
+    /// The time step is not positive and finite, or so long that the tool would leave the range of 32-bit
+    /// numbers.
     #[error("a step must take a positive and finite time, not {0} s")]
     TimeStep(f32),
 }

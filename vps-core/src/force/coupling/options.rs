@@ -1,4 +1,4 @@
-//! The tool, and spring, damper and limits.
+//! The tool, and the parameters of spring, damper and limits.
 
 use glamx::{Mat3, Vec3};
 use wide::f32x4;
@@ -6,10 +6,10 @@ use wide::f32x4;
 use super::error::{CouplingError, check_positive};
 use crate::asset::MassProperties;
 
-/// The simulated body a haptic device moves.
+/// The simulated body that a haptic device moves.
 ///
-/// Mass and inertia need not be those of a real tool: the lighter it is, the less of it is felt and
-/// the less damping it needs. No contact is too stiff for a light one if its
+/// Mass and inertia need not be those of a real tool: the lighter it is, the less its inertia is felt and
+/// the less damping it needs. A light tool is stable with contacts of any stiffness whose
 /// [`LinearWrench`](crate::LinearWrench) is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tool {
@@ -44,14 +44,14 @@ pub struct CouplingOptions {
     pub angular_stiffness: f32,
     /// Of the damper between the orientations, in N m s/rad.
     pub angular_damping: f32,
-    /// How many seconds of its stiffness a contact damps: a contact of k N/m has this many times k
+    /// Damping of contacts in seconds, relative to their stiffness: a contact of k N/m has this times k
     /// N s/m.
     pub contact_damping: f32,
-    /// The largest force in N that is given to the device, and that the spring exerts.
+    /// The largest force in N that the device renders and the spring exerts.
     pub max_force: f32,
     /// The same for torques, in N m.
     pub max_torque: f32,
-    /// In m/s. A device that seems to be faster, and a tool that would be, are taken to be this fast.
+    /// Limit in m/s of the speeds of device and tool.
     pub max_speed: f32,
     /// The same in rad/s.
     pub max_angular_speed: f32,
@@ -62,7 +62,7 @@ impl CouplingOptions {
     /// largest inertia; contacts damp 1 ms of their stiffness. At most 10 N, 0.5 N m, 5 m/s and
     /// 50 rad/s.
     pub fn critically_damped(tool: &Tool, stiffness: f32, angular_stiffness: f32) -> Self {
-        // No axis of a solid has more than half of the trace.
+        // The moment of inertia about any axis is at most half of the trace.
         let Mat3 {
             x_axis: x,
             y_axis: y,

@@ -6,7 +6,7 @@ use glamx::{DVec3, Vec3};
 pub(super) struct Spring {
     stiffness: f64,
     damping: f64,
-    /// The most that both together do to the device.
+    /// Limit of the sum of both that the device renders.
     limit: f64,
     /// From the tool to the device, before the step.
     offset: DVec3,
@@ -14,18 +14,18 @@ pub(super) struct Spring {
 }
 
 impl Spring {
-    /// Of stiffness, damping and limit. One that would be beyond its limit is as much softer as it
-    /// takes: the quadratic potential of that one touches the true one where the tool is and is
-    /// nowhere below it, so that an implicit step cannot add energy.
+    /// From stiffness, damping and limit. A spring beyond its limit is replaced by the softer one that
+    /// exerts the limit: its quadratic potential touches the true one at the tool and is nowhere below it,
+    /// so that an implicit step cannot add energy.
     pub(super) fn new(
         (stiffness, damping, limit): (f32, f32, f32),
         offset: Vec3,
         device_velocity: DVec3,
     ) -> Self {
         let (limit, offset) = (f64::from(limit), offset.as_dvec3());
-        let softer = limit / offset.length();
+        let limiting_stiffness = limit / offset.length();
         Self {
-            stiffness: softer.min(stiffness.into()),
+            stiffness: limiting_stiffness.min(stiffness.into()),
             damping: damping.into(),
             limit,
             offset,
@@ -33,15 +33,15 @@ impl Spring {
         }
     }
 
-    /// The momentum a velocity at the end of a step of `h` seconds costs, per velocity, and what is
-    /// gained whatever it is.
+    /// The implicit drag coefficient of a step of `h` seconds in kg, and the impulse that does not depend on
+    /// the velocity at its end.
     pub(super) fn implicit(&self, h: f64) -> (f64, DVec3) {
         let (stiffness, damping) = (h * self.stiffness, h * self.damping);
-        let push = damping * self.device_velocity + stiffness * self.offset;
-        (damping + h * stiffness, push)
+        let impulse = damping * self.device_velocity + stiffness * self.offset;
+        (damping + h * stiffness, impulse)
     }
 
-    /// What the device exerts on the user at the end of the step.
+    /// The force or torque that the device exerts on the user at the end of the step.
     pub(super) fn on_device(&self, velocity: DVec3, h: f64) -> Vec3 {
         let spring = self.stiffness * (self.offset - h * velocity);
         let damper = self.damping * (self.device_velocity - velocity);

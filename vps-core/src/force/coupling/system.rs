@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use glamx::{DMat3, DVec3};
 
-/// Six equations for velocities: a symmetric matrix, and what it times the velocities is.
+/// Six equations for the velocities: a symmetric matrix in blocks, and the right-hand side.
 pub(super) struct System {
     pub(super) linear: DMat3,
     pub(super) mixed: DMat3,
@@ -14,15 +14,15 @@ pub(super) struct System {
 }
 
 impl System {
-    /// By Cholesky's method without roots. `mass` and `inertia` are lower bounds on the pivots, for
-    /// which rounding may have been too much.
+    /// Solves by an LDLᵀ decomposition. `mass` and `inertia` are lower bounds on the pivots, enforced
+    /// against rounding.
     pub(super) fn solved(&self, mass: f64, inertia: f64) -> (DVec3, DVec3) {
         let mut matrix: [[f64; 6]; 6] = from_fn(|row| {
             from_fn(|column| match (row / 3, column / 3) {
                 (0, 0) => self.linear.col(column)[row],
                 (1, 0) => self.mixed.col(column)[row - 3],
                 (1, 1) => self.angular.col(column - 3)[row - 3],
-                // Only the lower half is read.
+                // Only the lower triangle is read.
                 _ => 0.0,
             })
         });
@@ -30,8 +30,8 @@ impl System {
         x[..3].copy_from_slice(&self.momentum.to_array());
         x[3..].copy_from_slice(&self.angular_momentum.to_array());
         for j in 0..6 {
-            let least = if j < 3 { mass } else { inertia };
-            matrix[j][j] = matrix[j][j].max(least);
+            let min_pivot = if j < 3 { mass } else { inertia };
+            matrix[j][j] = matrix[j][j].max(min_pivot);
             for i in j + 1..6 {
                 let factor = matrix[i][j] / matrix[j][j];
                 for row in &mut matrix[i..] {
@@ -41,8 +41,8 @@ impl System {
             }
         }
         for j in (0..6).rev() {
-            let above: f64 = (j + 1..6).map(|i| matrix[i][j] * x[i]).sum();
-            x[j] = (x[j] - above) / matrix[j][j];
+            let eliminated: f64 = (j + 1..6).map(|i| matrix[i][j] * x[i]).sum();
+            x[j] = (x[j] - eliminated) / matrix[j][j];
         }
         (DVec3::from_slice(&x[..3]), DVec3::from_slice(&x[3..]))
     }

@@ -1,4 +1,4 @@
-//! Where the values of a [`Voxelmap`](crate::Voxelmap) lie.
+//! The values of a [`Voxelmap`](crate::Voxelmap), dense or sparse.
 
 mod index;
 mod layout;
@@ -8,12 +8,12 @@ mod value;
 
 use wide::f32x4;
 
-use self::index::{Layout, Sparse};
+use self::index::{Layout, SparseLayout};
 pub(crate) use self::layout::product;
 pub use self::layout::{
     BRICK_VALUES, CELL, CellGroup, MIDDLE_VALUES, RefinedCell, cell_dims, mark_plain,
 };
-use self::layout::{for_each_cell, is_plain, is_set, lattice_dims};
+use self::layout::{for_each_cell, has_coarse_neighbourhood, is_set, lattice_dims};
 use self::reader::Reader;
 pub use self::value::Values;
 use crate::map::error::VoxelmapError;
@@ -25,15 +25,14 @@ use crate::storage::Storage;
 /// A dense store holds them all, x fastest, then y, then z. A sparse one has two levels:
 ///
 /// * The grid is cut into cells of 8 x 8 x 8 voxels. A lattice of values, one at the first voxel
-///   of every cell and one behind the last along each axis, holds for all voxels by trilinear
+///   of every cell and one beyond the last along each axis, gives all voxels by trilinear
 ///   interpolation.
-/// * Where that is not good enough a cell is refined: it has 3 x 3 x 3 values of its own, 4 voxels
-///   apart, between which its voxels are interpolated; and where that is not good enough either,
-///   close to the surface above all, the 8 values of a brick of 2 x 2 x 2 voxels are stored as
-///   they are.
+/// * Where that is not accurate enough, a cell is refined: it has 3 x 3 x 3 values of its own, 4
+///   voxels apart, between which its voxels are interpolated. Where that is not accurate enough
+///   either, mainly close to the surface, the 8 values of a brick of 2 x 2 x 2 voxels are stored.
 ///
-/// The values of the lattice come first, then those of the refined cells, then the bricks. What
-/// is good enough, the builder decides, and states it in [`Accuracy`](crate::Accuracy).
+/// The values of the lattice come first, then those of the refined cells, then the bricks. The
+/// builder decides about refinement and states the error in [`Accuracy`](crate::Accuracy).
 #[derive(Clone, Debug)]
 pub struct Store<'a> {
     dims: [u32; 3],
@@ -43,10 +42,10 @@ pub struct Store<'a> {
 }
 
 impl<'a> Store<'a> {
-    /// A value for each of `dims` voxels.
+    /// A dense store: one value for each of `dims` voxels.
     ///
     /// # Errors
-    /// When there are more or fewer, or one is not finite.
+    /// When the number of values is wrong, or one is not finite.
     pub fn dense(dims: [u32; 3], values: Values<'a>) -> Result<Self, VoxelmapError> {
         Self {
             dims,
@@ -57,7 +56,7 @@ impl<'a> Store<'a> {
         .checked(product(dims))
     }
 
-    /// Values for a grid of `dims` voxels where `groups` and `cells` say that they are.
+    /// A sparse store for a grid of `dims` voxels, refined as `groups` and `cells` state.
     ///
     /// # Errors
     /// When the parts do not fit together, or a value is not finite.
@@ -76,7 +75,7 @@ impl<'a> Store<'a> {
         for (i, group) in groups.iter().enumerate() {
             let here = (cell_count - 64 * i).min(64);
             let beyond = if here == 64 { 0 } else { !0 << here };
-            let bits = group.refined | group.plain;
+            let bits = group.refined | group.coarse_neighbourhood;
             if group.before as usize != refined || bits & beyond != 0 {
                 return Err(VoxelmapError::Cells);
             }
@@ -84,7 +83,8 @@ impl<'a> Store<'a> {
         }
         let mut marked = true;
         for_each_cell(dims, |cell, index| {
-            marked &= is_set(groups[index / 64].plain, index) == is_plain(dims, &groups, cell);
+            marked &= is_set(groups[index / 64].coarse_neighbourhood, index)
+                == has_coarse_neighbourhood(dims, &groups, cell);
         });
         if cells.len() != refined || !marked {
             return Err(VoxelmapError::Cells);
@@ -96,14 +96,14 @@ impl<'a> Store<'a> {
             }
             stored += cell.bricks.count_ones() as usize;
         }
-        let middles = product(lattice_dims(cell_dims));
-        let bricks = middles + refined * MIDDLE_VALUES;
-        let layout = Layout::Sparse(Sparse {
+        let cells_start = product(lattice_dims(cell_dims));
+        let bricks_start = cells_start + refined * MIDDLE_VALUES;
+        let layout = Layout::Sparse(SparseLayout {
             groups,
             cells,
             cell_dims,
-            middles,
-            bricks,
+            cells_start,
+            bricks_start,
         });
         Self {
             dims,
@@ -111,7 +111,7 @@ impl<'a> Store<'a> {
             values,
             layout,
         }
-        .checked(bricks + stored * BRICK_VALUES)
+        .checked(bricks_start + stored * BRICK_VALUES)
     }
 
     fn checked(self, expected: usize) -> Result<Self, VoxelmapError> {
@@ -132,7 +132,7 @@ impl<'a> Store<'a> {
         Ok(self)
     }
 
-    /// Cells of 8 x 8 x 8 voxels along x, y and z.
+    /// The number of cells of 8 x 8 x 8 voxels along x, y and z.
     #[inline]
     pub(crate) fn cell_dims(&self) -> [u32; 3] {
         self.cell_dims
@@ -144,12 +144,12 @@ impl<'a> Store<'a> {
         self.dims
     }
 
-    /// The numbers, in the order of the store.
+    /// All values, in the order of the store.
     pub fn values(&self) -> &Values<'a> {
         &self.values
     }
 
-    /// Which cells are refined, and what they hold; both are empty for a dense store.
+    /// The groups of cells and the refined cells; both are empty for a dense store.
     pub fn cells(&self) -> (&[CellGroup], &[RefinedCell]) {
         match &self.layout {
             Layout::Dense => (&[], &[]),
@@ -157,12 +157,12 @@ impl<'a> Store<'a> {
         }
     }
 
-    /// Whether all values are stored.
+    /// Whether the value of every voxel is stored.
     pub fn is_dense(&self) -> bool {
         matches!(self.layout, Layout::Dense)
     }
 
-    /// What the store takes in memory, and in a file but for its alignment.
+    /// Size in memory in bytes; the same in a file, without padding.
     pub fn byte_len(&self) -> usize {
         let (groups, cells) = self.cells();
         self.values.bytes().len() + size_of_val(groups) + size_of_val(cells)
@@ -177,8 +177,8 @@ impl<'a> Store<'a> {
         }
     }
 
-    /// What lies between the voxels `corners` and their next neighbours along each axis at `t`,
-    /// between 0 and 1, and how much it grows per voxel there.
+    /// Trilinear interpolation between the voxels `corners` and their next neighbours at `t` (0 to 1
+    /// along each axis), and its gradient per voxel.
     #[inline(always)]
     pub(crate) fn interpolated(&self, corners: Voxels, t: Vectors) -> (f32x4, Vectors) {
         match &self.values {
@@ -204,7 +204,7 @@ impl<'a> Store<'a> {
             values: self.values.into_owned(),
             layout: match self.layout {
                 Layout::Dense => Layout::Dense,
-                Layout::Sparse(sparse) => Layout::Sparse(Sparse {
+                Layout::Sparse(sparse) => Layout::Sparse(SparseLayout {
                     groups: sparse.groups.into_owned(),
                     cells: sparse.cells.into_owned(),
                     ..sparse
@@ -234,7 +234,7 @@ mod tests {
             ..CellGroup::default()
         }];
         mark_plain(DIMS, &mut groups);
-        assert_eq!(groups[0].plain, 0b001000);
+        assert_eq!(groups[0].coarse_neighbourhood, 0b001000);
         let cells = vec![
             RefinedCell::default(),
             RefinedCell {
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn each_voxel_finds_its_value() {
+    fn each_voxel_has_its_value() {
         let store = store(numbered()).unwrap();
         // The lattice: 4 x 3 x 2 values.
         assert_eq!(store.value([0, 0, 0]), 0.0);
@@ -276,9 +276,9 @@ mod tests {
         assert_eq!(store.value([16, 8, 2]), 51.0 + 9.0 * 0.5);
     }
 
-    /// The short ways of interpolation against eight values of their own.
+    /// The shortcuts of interpolation against a dense store.
     #[test]
-    fn interpolation_is_that_of_the_eight_values() {
+    fn sparse_interpolation_equals_dense_interpolation() {
         let sparse = store(numbered()).unwrap();
         let mut all = Vec::new();
         for z in 0..DIMS[2] {
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_do_not_fit_are_refused() {
+    fn inconsistent_parts_are_refused() {
         let mut fewer = numbered();
         fewer.pop();
         assert!(matches!(

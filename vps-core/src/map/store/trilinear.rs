@@ -3,16 +3,16 @@
 use glamx::Vec3;
 use wide::f32x4;
 
-use super::value::Value;
+use super::value::StoredValue;
 use crate::simd::{LANES, Vectors};
 
-/// Eight values in each lane, x fastest, then y, then z.
-pub(super) struct Eight([f32x4; 8]);
+/// The eight values around a point in each lane, x fastest, then y, then z.
+pub(super) struct TrilinearStencil([f32x4; 8]);
 
-impl Eight {
-    /// Of rows along x, the pairs of all lanes in each.
+impl TrilinearStencil {
+    /// From the four rows along x, each with the pairs of all lanes.
     #[inline(always)]
-    pub(super) fn of<T: Value>([low, next, high, last]: [[T::Pair; LANES]; 4]) -> Self {
+    pub(super) fn of<T: StoredValue>([low, next, high, last]: [[T::Pair; LANES]; 4]) -> Self {
         let ([a, b], [c, d]) = (T::unzip(low), T::unzip(next));
         let ([e, f], [g, h]) = (T::unzip(high), T::unzip(last));
         Self([a, b, c, d, e, f, g, h])
@@ -20,7 +20,7 @@ impl Eight {
 
     /// The same values in all lanes.
     #[inline(always)]
-    fn splat<T: Value>([a, b, c, d]: [T::Pair; 4]) -> Self {
+    fn splat<T: StoredValue>([a, b, c, d]: [T::Pair; 4]) -> Self {
         Self::of::<T>([[a; LANES], [b; LANES], [c; LANES], [d; LANES]])
     }
 
@@ -31,12 +31,12 @@ impl Eight {
         }
     }
 
-    /// Trilinear interpolation, and how much it grows per step along each axis.
+    /// Trilinear interpolation at `t`, and its gradient per step of the values.
     #[inline(always)]
     pub(super) fn interpolated(&self, t: Vectors) -> (f32x4, Vectors) {
         let lerp = |a: f32x4, b: f32x4, t: f32x4| a + (b - a) * t;
         let [a, b, c, d, e, f, g, h] = self.0;
-        // Slopes along x in the four rows, and the rows at t.
+        // Slopes along x of the four rows, and the values of the rows at t.x.
         let steps = [b - a, d - c, f - e, h - g];
         let rows = [
             a + steps[0] * t.x,
@@ -58,10 +58,10 @@ impl Eight {
     }
 }
 
-/// What the values at the corners of a cube of `size` voxels make of one of them and of the next
-/// ones, but for those behind faces that are crossed.
+/// Interpolates the eight voxels from `first` on between the corners of a cube of `size` voxels. Along
+/// axes in `crosses` the next voxel lies beyond the cube, and `first` is used in its place.
 #[inline(always)]
-pub(super) fn between<T: Value>(
+pub(super) fn interpolated_voxels<T: StoredValue>(
     corners: [T::Pair; 4],
     first: [usize; 3],
     crosses: [bool; 3],
@@ -71,7 +71,7 @@ pub(super) fn between<T: Value>(
         let next = if crosses[axis] { [0.0; LANES] } else { next };
         (f32x4::new(next) + first[axis] as f32) / size as f32
     };
-    let corners = Eight::splat::<T>(corners);
+    let corners = TrilinearStencil::splat::<T>(corners);
     let plane = |next: f32| {
         let t = Vectors {
             x: t(0, [0.0, 1.0, 0.0, 1.0]),
@@ -83,9 +83,9 @@ pub(super) fn between<T: Value>(
     bytemuck::cast([plane(0.0), plane(1.0)])
 }
 
-/// What the values at the corners of a cube make of a single point.
+/// Interpolates a single point between the corners of a cube.
 #[inline(always)]
-pub(super) fn at<T: Value>(corners: [T::Pair; 4], t: Vec3) -> f32 {
-    let (value, _) = Eight::splat::<T>(corners).interpolated(Vectors::splat(t));
+pub(super) fn interpolated_point<T: StoredValue>(corners: [T::Pair; 4], t: Vec3) -> f32 {
+    let (value, _) = TrilinearStencil::splat::<T>(corners).interpolated(Vectors::splat(t));
     value.to_array()[0]
 }

@@ -1,4 +1,4 @@
-//! The numbers in a store, and pairs of them.
+//! The values of a store, and loads of neighbouring pairs.
 
 use bytemuck::Pod;
 use wide::{f32x4, i32x4};
@@ -6,7 +6,7 @@ use wide::{f32x4, i32x4};
 use crate::simd::LANES;
 use crate::storage::Storage;
 
-/// The numbers in a [`Store`](crate::Store).
+/// The values of a [`Store`](crate::Store).
 #[derive(Clone, Debug)]
 pub enum Values<'a> {
     /// 16-bit integers: layers, or distances in steps of λ (eq. 1).
@@ -16,7 +16,7 @@ pub enum Values<'a> {
 }
 
 impl Values<'_> {
-    /// How many there are.
+    /// The number of values.
     pub fn len(&self) -> usize {
         match self {
             Self::Integers(values) => values.len(),
@@ -24,12 +24,12 @@ impl Values<'_> {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there is no value.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The values as bytes in the machine's order.
+    /// The values as bytes in native byte order.
     pub fn bytes(&self) -> &[u8] {
         match self {
             Self::Integers(values) => bytemuck::cast_slice(values),
@@ -46,26 +46,26 @@ impl Values<'_> {
     }
 }
 
-/// A number in a store.
-pub(super) trait Value: Pod + Into<f32> {
-    /// Two that lie next to each other.
+/// A value as it is stored.
+pub(super) trait StoredValue: Pod + Into<f32> {
+    /// Two neighbouring values along x.
     type Pair: Pod;
 
     fn pair(values: &[Self], first: usize) -> Self::Pair;
 
     fn pair_of(first: Self, second: Self) -> Self::Pair;
 
-    /// The first ones of all pairs, and the second ones.
+    /// The first values of all pairs, and the second ones.
     fn unzip(pairs: [Self::Pair; LANES]) -> [f32x4; 2];
 }
 
-impl Value for i16 {
-    /// Both at once, as they lie in memory.
+impl StoredValue for i16 {
+    /// Both in one word, as they lie in memory.
     type Pair = i32;
 
     #[inline(always)]
     fn pair(values: &[Self], first: usize) -> i32 {
-        // As a whole: of two loads the compiler makes worse.
+        // One load: the compiler generates slower code for two.
         let mut pair = [0_i16; 2];
         pair.copy_from_slice(&values[first..first + 2]);
         let both: i32 = bytemuck::cast(pair);
@@ -90,7 +90,7 @@ impl Value for i16 {
     }
 }
 
-impl Value for f32 {
+impl StoredValue for f32 {
     type Pair = [f32; 2];
 
     #[inline(always)]

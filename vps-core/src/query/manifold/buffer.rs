@@ -1,28 +1,28 @@
-//! Candidates kept on the stack.
+//! Candidates buffered on the stack.
 
 use wide::f32x4;
 
-use super::collectors::Spread;
-use super::weighting::{Closeness, KEPT_WEIGHT, LEAST_WEIGHT};
-use crate::query::collectors::Deepest;
+use super::collectors::BestCandidate;
+use super::weighting::{DepthWeighting, MIN_FILL_WEIGHT, MIN_WEIGHT};
+use crate::query::collectors::DeepestContact;
 use crate::query::contact::Contact;
-use crate::query::search::{Found, Goal};
+use crate::query::search::{Collector, Found};
 use crate::shell::PointSphereTree;
 use crate::simd::{LANES, Points, Vectors, lanes_in};
 
-/// How many groups of contacts are kept for the manifold, on the stack.
-const KEPT: usize = 256;
+/// Capacity of the buffer in batches.
+const CAPACITY: usize = 256;
 
 /// Points that were tested together.
 #[derive(Clone, Copy)]
-pub(super) struct Group {
-    /// The first one's number.
+pub(super) struct Batch {
+    /// Index of the first point.
     first: u32,
-    /// Minus infinity for those that do not count.
+    /// In metres; minus infinity for points that are not in contact.
     penetrations: [f32; LANES],
 }
 
-impl Group {
+impl Batch {
     #[inline(always)]
     pub(super) fn positions(&self, tree: &PointSphereTree<'_>) -> Vectors {
         Points::read(tree.points(), self.first as usize).into()
@@ -34,125 +34,139 @@ impl Group {
     }
 }
 
-/// The deepest contact, and those that count enough.
-pub(super) struct Near {
-    closeness: Closeness,
-    /// Contacts less deep are not kept.
-    pub(super) least: f32,
-    pub(super) deepest: Deepest,
-    pub(super) kept: [Group; KEPT],
+/// The deepest contact, and the contacts of sufficient weight.
+pub(super) struct CandidateBuffer {
+    weighting: DepthWeighting,
+    /// The lowest penetration of buffered contacts, in metres.
+    pub(super) threshold: f32,
+    pub(super) deepest: DeepestContact,
+    pub(super) candidates: [Batch; CAPACITY],
     pub(super) len: usize,
     pub(super) is_full: bool,
-    /// Whether those that count a little were asked for.
-    pub(super) has_reached: bool,
+    /// Whether contacts of low weight were searched for.
+    pub(super) includes_low_weights: bool,
 }
 
-impl Near {
-    pub(super) fn new(closeness: Closeness) -> Self {
-        let none = Group {
+impl CandidateBuffer {
+    pub(super) fn new(weighting: DepthWeighting) -> Self {
+        let empty = Batch {
             first: 0,
             penetrations: [f32::NEG_INFINITY; LANES],
         };
         Self {
-            closeness,
-            least: -closeness.margin,
-            deepest: Deepest::new(closeness.margin),
-            kept: [none; KEPT],
+            weighting,
+            threshold: -weighting.margin,
+            deepest: DeepestContact::new(weighting.margin),
+            candidates: [empty; CAPACITY],
             len: 0,
             is_full: false,
-            has_reached: false,
+            includes_low_weights: false,
         }
     }
 
-    /// Offers what was kept, first what is best but for its normal: little of the rest is left then
-    /// that could be better.
+    /// Adds the candidates to a collector. Those with the highest score before the weight of their normal
+    /// come first, so that few others can exceed the threshold.
     #[inline(always)]
-    pub(super) fn offer_to<const N: usize>(
+    pub(super) fn add_to<const N: usize>(
         &self,
         tree: &PointSphereTree<'_>,
-        spread: &mut Spread<'_, N>,
+        best: &mut BestCandidate<'_, N>,
     ) {
-        let kept = &self.kept[..self.len];
-        let mut scores = [f32x4::ZERO; KEPT];
-        let mut most = f32x4::splat(spread.least);
-        for (group, scores) in kept.iter().zip(&mut scores) {
-            *scores = spread
+        let candidates = &self.candidates[..self.len];
+        let mut scores = [f32x4::ZERO; CAPACITY];
+        let mut max_score = f32x4::splat(best.threshold);
+        for (batch, scores) in candidates.iter().zip(&mut scores) {
+            *scores = best
                 .polygon
-                .scores(group.positions(tree), group.penetrations());
-            most = most.fast_max(*scores);
+                .scores(batch.positions(tree), batch.penetrations());
+            max_score = max_score.fast_max(*scores);
         }
-        let most = most.to_array().into_iter().fold(spread.least, f32::max);
-        for is_rest in [false, true] {
-            for (group, scores) in kept.iter().zip(scores) {
-                let from = if is_rest { spread.least } else { most };
-                for lane in lanes_in(scores.simd_ge(f32x4::splat(from))) {
-                    let penetration = group.penetrations[lane];
-                    let contact = Contact::of(tree, group.first + lane as u32, penetration);
-                    spread.consider(contact, scores.to_array()[lane]);
+        let max_score = max_score
+            .to_array()
+            .into_iter()
+            .fold(best.threshold, f32::max);
+        for is_second_pass in [false, true] {
+            for (batch, scores) in candidates.iter().zip(scores) {
+                let min_score = if is_second_pass {
+                    best.threshold
+                } else {
+                    max_score
+                };
+                for lane in lanes_in(scores.simd_ge(f32x4::splat(min_score))) {
+                    let penetration = batch.penetrations[lane];
+                    let contact = Contact::of(tree, batch.first + lane as u32, penetration);
+                    best.consider(contact, scores.to_array()[lane]);
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn keep(&mut self, group: Group) {
-        if self.len == KEPT {
-            self.drop_shallow();
+    fn push(&mut self, batch: Batch) {
+        if self.len == CAPACITY {
+            self.discard_shallow();
         }
-        if self.len == KEPT {
+        if self.len == CAPACITY {
             self.is_full = true;
-            self.least = self.deepest.least;
+            self.threshold = self.deepest.threshold;
             return;
         }
-        self.kept[self.len] = group;
+        self.candidates[self.len] = batch;
         self.len += 1;
     }
 
-    /// Forgets what was kept, to be offered all contacts again, also those that count a little.
-    pub(super) fn reach_down(&mut self) {
-        self.least = self.closeness.least_deep(self.deepest.least, KEPT_WEIGHT);
-        (self.len, self.has_reached) = (0, true);
+    /// Empties the buffer and lowers the threshold, for another search that includes contacts of low
+    /// weight.
+    pub(super) fn lower_threshold(&mut self) {
+        self.threshold = self
+            .weighting
+            .min_penetration(self.deepest.threshold, MIN_FILL_WEIGHT);
+        (self.len, self.includes_low_weights) = (0, true);
     }
 
-    /// Some may have been kept before a deeper one was known.
+    /// Discards batches below the threshold, which may have risen since they were buffered.
     #[inline(always)]
-    pub(super) fn drop_shallow(&mut self) {
-        let mut left = 0;
+    pub(super) fn discard_shallow(&mut self) {
+        let mut kept = 0;
         for i in 0..self.len {
-            self.kept[left] = self.kept[i];
-            let counts = self.kept[i]
+            self.candidates[kept] = self.candidates[i];
+            let contact_mask = self.candidates[i]
                 .penetrations()
-                .simd_ge(f32x4::splat(self.least));
-            left += usize::from(counts.any());
+                .simd_ge(f32x4::splat(self.threshold));
+            kept += usize::from(contact_mask.any());
         }
-        self.len = left;
+        self.len = kept;
     }
 }
 
-impl Goal for Near {
+impl Collector for CandidateBuffer {
     const BEST_FIRST: bool = true;
 
     #[inline(always)]
-    fn least_penetration(&self) -> f32 {
-        self.least
+    fn penetration_threshold(&self) -> f32 {
+        self.threshold
     }
 
     #[inline(always)]
-    fn offer(&mut self, found: &Found<'_>) -> bool {
-        let before = self.deepest.least;
-        self.deepest.offer(found);
-        if self.deepest.least > before {
-            self.least = if self.is_full {
-                self.deepest.least
+    fn add(&mut self, found: &Found<'_>) -> bool {
+        let previous_threshold = self.deepest.threshold;
+        self.deepest.add(found);
+        if self.deepest.threshold > previous_threshold {
+            self.threshold = if self.is_full {
+                self.deepest.threshold
             } else {
-                self.closeness.least_deep(self.deepest.least, LEAST_WEIGHT)
+                self.weighting
+                    .min_penetration(self.deepest.threshold, MIN_WEIGHT)
             };
         }
         if !self.is_full {
-            let none = f32x4::splat(f32::NEG_INFINITY);
-            self.keep(Group {
+            let empty = f32x4::splat(f32::NEG_INFINITY);
+            self.push(Batch {
                 first: found.first,
-                penetrations: found.counts.select(found.penetrations, none).to_array(),
+                penetrations: found
+                    .contact_mask
+                    .select(found.penetrations, empty)
+                    .to_array(),
             });
         }
         true

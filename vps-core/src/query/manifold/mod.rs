@@ -1,4 +1,4 @@
-//! Contact reduction: a few contacts that stand for the contact set.
+//! Contact reduction: a few contacts that represent the contact set.
 
 mod buffer;
 mod collectors;
@@ -10,26 +10,26 @@ mod weighting;
 use glamx::Vec3;
 
 use self::polygon::Polygon;
-use self::source::{Listed, Source, best};
-use self::weighting::{Closeness, STANDS_ON};
+use self::source::{CandidateSource, ListedCandidates, best};
+use self::weighting::{DepthWeighting, SUPPORT_CONTACTS};
 use crate::query::contact::Contact;
 
-/// At most `N` contacts that stand for a contact set: the deepest one first, then those that
-/// spread the manifold over the largest area (section 3.2).
+/// At most `N` contacts that represent a contact set (contact reduction): the deepest one first, then
+/// those that give the manifold the largest area (section 3.2).
 ///
-/// What a point adds to the area counts less the further outside of the solid it is than the
-/// deepest, half at a hundredth of the margin: the points a body stands on come before those that
-/// lie further apart above the ground, without which it would sink and rise and never rest. Of a
-/// body that moves, other points touch the ground in the next step: then contacts count half that
-/// are as far away as it has come ([`Query::with_motion`](crate::Query::with_motion)). Those that count less than half of what
-/// the deepest does only fill up what places the others leave, up to four: a body may fall on them
-/// next.
+/// The area a contact adds is weighted by its depth: the further outside of the solid it lies than the
+/// deepest one, the less it counts, with half weight at a hundredth of the margin. The points on which
+/// a body rests thus come before points that are further apart but above the ground; without them the
+/// body would never come to rest. While a body moves, other points touch the ground in the next step:
+/// the distance of half weight is then its motion since the previous query
+/// ([`Query::with_motion`](crate::Query::with_motion)). Contacts with less than half the weight of the
+/// deepest one only fill up the manifold to four contacts, since the body may tip onto them next.
 ///
-/// More than four are picked only where the field is bent, that is where the penetrations of those
-/// that count enough are not those in a half-space: four hold a body on what is flat, but not in a
-/// thread. And a contact counts less the more its normal is askew, down to a quarter: points a
-/// little inside of an edge come before those on it, whose normals belong to neither side. Of
-/// equally good contacts the first is taken.
+/// More than four contacts are selected only where the field is curved, that is where the penetrations
+/// of contacts of sufficient weight differ from those in a half-space: four contacts support a body on a
+/// plane, but not in a thread. The weight also decreases with the angle between the normals of a contact
+/// and of the deepest one, down to a quarter: points close to an edge come before those on it, whose
+/// normals belong to neither side. Of contacts with equal scores the first is selected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
@@ -47,22 +47,27 @@ impl<const N: usize> ContactManifold<N> {
         len: 0,
     };
 
-    /// Picks from `contacts`, found by a query with `margin` metres and a `motion`. The area is that
-    /// of the polygon of the picked points seen `along` a unit vector in the shell frame, the
-    /// direction in which penetration grows at the deepest point. Costs `N` passes.
+    /// Reduces `contacts`, found by a query with `margin` metres and a `motion`. The area is that of the
+    /// polygon of the selected points, seen `along` a unit vector in the shell frame: the direction in
+    /// which penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
     pub fn spread(contacts: &[Contact], along: Vec3, margin: f32, motion: Option<f32>) -> Self {
-        let closeness = Closeness { margin, motion };
+        let weighting = DepthWeighting { margin, motion };
         let deepest = best(contacts, |c| Some(c.penetration));
-        Self::pick(deepest, |_| along, closeness, &mut Listed(contacts))
+        Self::reduce(
+            deepest,
+            |_| along,
+            weighting,
+            &mut ListedCandidates(contacts),
+        )
     }
 
-    fn pick(
+    fn reduce(
         deepest: Option<Contact>,
         along: impl FnOnce(&Contact) -> Vec3,
-        closeness: Closeness,
-        source: &mut impl Source<N>,
+        weighting: DepthWeighting,
+        source: &mut impl CandidateSource<N>,
     ) -> Self {
         let mut manifold = Self::EMPTY;
         if N == 0 {
@@ -71,30 +76,31 @@ impl<const N: usize> ContactManifold<N> {
         let Some(deepest) = deepest else {
             return manifold;
         };
-        let mut polygon = Polygon::new(&deepest, along(&deepest), closeness);
+        let mut polygon = Polygon::new(&deepest, along(&deepest), weighting);
         manifold.push(deepest);
-        let mut most = N.min(STANDS_ON);
+        let mut max_contacts = N.min(SUPPORT_CONTACTS);
         let mut is_filled_up = false;
-        while manifold.len < most {
-            let mut picked = source.best(&polygon);
-            if picked.is_none() && manifold.len < STANDS_ON && !is_filled_up {
-                (polygon.least, is_filled_up) = (-closeness.margin, true);
-                picked = source.best(&polygon);
+        while manifold.len < max_contacts {
+            let mut selected = source.best(&polygon);
+            if selected.is_none() && manifold.len < SUPPORT_CONTACTS && !is_filled_up {
+                (polygon.penetration_threshold, is_filled_up) = (-weighting.margin, true);
+                selected = source.best(&polygon);
             }
-            let Some(next) = picked else {
+            let Some(next) = selected else {
                 break;
             };
             polygon.insert(next.position);
             manifold.push(next);
-            let may_go_on = manifold.len == STANDS_ON && STANDS_ON < N && !is_filled_up;
-            if may_go_on && source.is_bent(&polygon) {
-                most = N;
+            let may_extend =
+                manifold.len == SUPPORT_CONTACTS && SUPPORT_CONTACTS < N && !is_filled_up;
+            if may_extend && source.is_curved(&polygon) {
+                max_contacts = N;
             }
         }
         manifold
     }
 
-    /// The picked contacts, deepest first.
+    /// The selected contacts, deepest first.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts[..self.len]
     }
@@ -148,12 +154,12 @@ mod tests {
     #[test]
     fn a_point_that_touches_comes_before_one_above_it() {
         let mut contacts = std::vec![contact(0, 0.0, 0.0, 0.01), contact(1, 4.0, 0.0, 0.0)];
-        // A little further out, where it counts a third.
+        // A little further out, where its weight is a third.
         contacts.push(contact(2, 4.5, 0.0, -0.0015));
         assert_eq!(picked::<2>(&contacts), [0, 1]);
         contacts.remove(1);
         assert_eq!(picked::<2>(&contacts), [0, 2]);
-        // Where it counts too little, unless nothing else is left.
+        // Where its weight is too low, unless nothing else is left.
         contacts[1].penetration = -0.05;
         assert_eq!(picked::<2>(&contacts), [0, 2]);
         contacts.push(contact(3, 0.0, 0.001, 0.0));
@@ -162,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_touches_the_next_point_soon() {
+    fn a_moving_shell_counts_the_points_it_touches_next() {
         let mut contacts = [
             contact(0, 0.0, 0.0, 0.01),
             contact(1, 4.0, 0.0, 0.0),
@@ -176,7 +182,7 @@ mod tests {
             [0.0, 0.01, 0.1].map(|m| second(&contacts, Some(m))),
             [1, 1, 2]
         );
-        // What touches already may have been put there.
+        // A shell that touches already may have been placed there.
         assert_eq!(second(&contacts, None), 1);
         for contact in &mut contacts {
             contact.penetration -= 0.04;
@@ -185,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn four_are_enough_on_what_is_flat() {
+    fn four_contacts_are_enough_on_a_plane() {
         let ground: Vec<_> = (0..100)
             .map(|i| contact(i, (i % 10) as f32, (i / 10) as f32, 0.01))
             .collect();
@@ -208,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_add_no_area_are_not_picked() {
+    fn points_that_add_no_area_are_not_selected() {
         let line: Vec<_> = (0..9).map(|i| contact(i, i as f32, 0.0, 0.1)).collect();
         assert_eq!(picked::<4>(&line), [0, 8]);
         assert_eq!(picked::<4>(&[contact(3, 0.0, 0.0, 0.1); 7]), [3]);

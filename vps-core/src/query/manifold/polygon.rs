@@ -1,44 +1,47 @@
-//! The polygon of the picked points.
+//! The polygon of the selected contacts, and the scores of candidates for it.
 
 use glamx::Vec3;
 use wide::f32x4;
 
-use super::weighting::{ASKEW, BENT, Closeness, LEAST_WEIGHT, outside};
+use super::weighting::{
+    DepthWeighting, MIN_NORMAL_WEIGHT, MIN_WEIGHT, PLANARITY_TOLERANCE, distance_outside,
+};
 use crate::field::Discs;
 use crate::query::contact::Contact;
 use crate::simd::Vectors;
 
-/// The picked points as a polygon that grows.
+/// The convex polygon of the selected contacts.
 pub(super) struct Polygon<const N: usize> {
-    /// Corners in order, counter-clockwise, which is not the order of picking.
+    /// Corners in counter-clockwise order, not in the order of selection.
     corners: [Vec3; N],
     /// For each corner the edge to the next one.
     edges: [Edge; N],
     len: usize,
+    /// Unit direction in which the area is seen, in the shell frame.
     along: Vec3,
     /// The penetration at the first corner, in metres.
     deepest: f32,
-    /// What is no distance to speak of, in metres.
-    close: f32,
-    /// How much further outside a contact counts half, in metres.
-    half: f32,
-    /// From which penetration on contacts count enough.
-    pub(super) least: f32,
+    /// Distance in metres within which a contact counts as resting.
+    resting_distance: f32,
+    /// Distance in metres, measured from the first corner outwards, at which the weight is one half.
+    half_weight_distance: f32,
+    /// The lowest penetration of contacts that score, in metres.
+    pub(super) penetration_threshold: f32,
 }
 
 /// An edge of a polygon.
 #[derive(Clone, Copy)]
 struct Edge {
-    /// The outward direction in the plane of the polygon, as long as the edge.
+    /// Outward normal in the plane of the polygon, as long as the edge.
     outward: Vec3,
-    /// How far that way the edge is from the first corner, in square metres.
+    /// The product of the normal with the vector from the first corner to the edge, in m².
     offset: f32,
     /// In metres.
     length: f32,
 }
 
 impl<const N: usize> Polygon<N> {
-    pub(super) fn new(first: &Contact, along: Vec3, closeness: Closeness) -> Self {
+    pub(super) fn new(first: &Contact, along: Vec3, weighting: DepthWeighting) -> Self {
         Self {
             corners: [first.position; N],
             edges: [Edge {
@@ -49,13 +52,13 @@ impl<const N: usize> Polygon<N> {
             len: 1,
             along,
             deepest: first.penetration,
-            close: closeness.close(),
-            half: closeness.half(first.penetration),
-            least: closeness.least_deep(first.penetration, LEAST_WEIGHT),
+            resting_distance: weighting.resting_distance(),
+            half_weight_distance: weighting.half_weight_distance(first.penetration),
+            penetration_threshold: weighting.min_penetration(first.penetration, MIN_WEIGHT),
         }
     }
 
-    /// What a contact adds, weighted; `None` if nothing.
+    /// The score of a contact; `None` if it adds nothing.
     pub(super) fn score(&self, contact: &Contact) -> Option<f32> {
         if self.has_corner(contact.position) {
             return None;
@@ -63,89 +66,88 @@ impl<const N: usize> Polygon<N> {
         let position = Vectors::splat(contact.position);
         let penetration = f32x4::splat(contact.penetration);
         let score = self.scores(position, penetration).to_array()[0];
-        (score > 0.0).then_some(score * self.facing(contact.normal))
+        (score > 0.0).then_some(score * self.normal_weight(contact.normal))
     }
 
-    /// Which of the contacts that count are off the plane through the first corner, further than
-    /// what is flat makes of it.
+    /// The contacts of sufficient weight that are off the plane through the first corner by more than
+    /// the tolerance.
     #[inline(always)]
-    pub(super) fn bent(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
-        let way = positions.minus(Vectors::splat(self.corners[0]));
-        let in_plane = way.dot(Vectors::splat(self.along)) + f32x4::splat(self.deepest);
-        let off = (penetrations - in_plane).abs() - f32x4::splat(self.close);
-        let counts = penetrations.simd_ge(f32x4::splat(self.least));
-        counts & off.simd_gt(way.length() * f32x4::splat(BENT))
+    pub(super) fn off_plane(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
+        let offset = positions.minus(Vectors::splat(self.corners[0]));
+        let in_plane = offset.dot(Vectors::splat(self.along)) + f32x4::splat(self.deepest);
+        let off = (penetrations - in_plane).abs() - f32x4::splat(self.resting_distance);
+        let is_sufficient = penetrations.simd_ge(f32x4::splat(self.penetration_threshold));
+        is_sufficient & off.simd_gt(offset.length() * f32x4::splat(PLANARITY_TOLERANCE))
     }
 
-    /// Rounding would make area of nothing for those.
+    /// Whether a position is a corner, for which rounding could yield a positive area.
     pub(super) fn has_corner(&self, position: Vec3) -> bool {
         self.corners[..self.len].contains(&position)
     }
 
-    /// How much a contact counts by its normal, up to one: less where the shell bends away.
-    pub(super) fn facing(&self, normal: Vec3) -> f32 {
+    /// The weight of a contact by its normal, up to 1.
+    pub(super) fn normal_weight(&self, normal: Vec3) -> f32 {
         let cosine = normal.dot(self.along);
-        ASKEW + (1.0 - ASKEW) * (cosine * cosine).min(1.0)
+        MIN_NORMAL_WEIGHT + (1.0 - MIN_NORMAL_WEIGHT) * (cosine * cosine).min(1.0)
     }
 
-    /// What contacts add, weighted, but for their normals.
+    /// The scores of contacts, without the weights of their normals.
     #[inline(always)]
     pub(super) fn scores(&self, positions: Vectors, penetrations: f32x4) -> f32x4 {
-        self.gains(positions, |_| f32x4::ZERO) * self.weights(penetrations)
+        self.area_gains(positions, |_| f32x4::ZERO) * self.depth_weights(penetrations)
     }
 
-    /// The highest score of any contact in a disc, whatever its normal.
+    /// Upper bounds on the scores of contacts in discs, for any normal.
     #[inline(always)]
-    pub(super) fn bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
-        // More than rounding can make of it.
-        const ROUNDED: f32 = 1.0 + 1e-5;
+    pub(super) fn score_bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {
+        // Exceeds the rounding error.
+        const ROUNDING: f32 = 1.0 + 1e-5;
         let centers = Vectors::from(discs.centers);
         let radii = f32x4::new(discs.radii);
         let far = centers.minus(Vectors::splat(self.corners[0])).length() + radii;
         let reach = radii + far * 1e-6;
-        self.gains(centers, |edge| reach * edge) * self.weights(penetrations) * ROUNDED
+        self.area_gains(centers, |edge| reach * edge) * self.depth_weights(penetrations) * ROUNDING
     }
 
     #[inline(always)]
-    fn weights(&self, penetrations: f32x4) -> f32x4 {
-        let outside = -penetrations - f32x4::splat(outside(self.deepest));
-        let further = outside.fast_max(f32x4::ZERO) / self.half;
-        let weights = f32x4::ONE / (further * further + 1.0);
-        let counts = penetrations.simd_ge(f32x4::splat(self.least));
-        counts & weights
+    fn depth_weights(&self, penetrations: f32x4) -> f32x4 {
+        let distance_outside = -penetrations - f32x4::splat(distance_outside(self.deepest));
+        let further = distance_outside.fast_max(f32x4::ZERO) / self.half_weight_distance;
+        let depth_weights = f32x4::ONE / (further * further + 1.0);
+        let is_sufficient = penetrations.simd_ge(f32x4::splat(self.penetration_threshold));
+        is_sufficient & depth_weights
     }
 
-    /// How much points add: a length for a single corner, otherwise twice an area, only what lies
-    /// outside of the polygon; `more` is how much more it may be beyond an edge of that length (one
-    /// for a single corner).
+    /// The gain of points: a length for a single corner, otherwise twice the area added outside of the
+    /// polygon. `slack` is added to the gain beyond an edge of the given length (1 for a single corner).
     #[inline(always)]
-    fn gains(&self, points: Vectors, more: impl Fn(f32) -> f32x4) -> f32x4 {
+    fn area_gains(&self, points: Vectors, slack: impl Fn(f32) -> f32x4) -> f32x4 {
         let from_first = points.minus(Vectors::splat(self.corners[0]));
         if self.len == 1 {
-            return from_first.length() + more(1.0);
+            return from_first.length() + slack(1.0);
         }
-        let mut most = f32x4::ZERO;
+        let mut max_gain = f32x4::ZERO;
         for edge in &self.edges[..self.len] {
-            most = most.fast_max(edge.beyond(from_first) + more(edge.length));
+            max_gain = max_gain.fast_max(edge.gain(from_first) + slack(edge.length));
         }
-        most
+        max_gain
     }
 
-    /// Puts a corner in behind the edge it adds the most to.
+    /// Inserts a corner after the edge with the largest gain.
     pub(super) fn insert(&mut self, point: Vec3) {
         let from_first = Vectors::splat(point - self.corners[0]);
-        let (mut behind, mut most) = (0, f32::NEG_INFINITY);
+        let (mut behind, mut max_gain) = (0, f32::NEG_INFINITY);
         for (i, edge) in self.edges[..self.len].iter().enumerate() {
-            let gain = edge.beyond(from_first).to_array()[0];
-            if gain > most {
-                (behind, most) = (i, gain);
+            let gain = edge.gain(from_first).to_array()[0];
+            if gain > max_gain {
+                (behind, max_gain) = (i, gain);
             }
         }
         self.corners.copy_within(behind + 1..self.len, behind + 2);
         self.edges.copy_within(behind + 1..self.len, behind + 2);
         self.corners[behind + 1] = point;
         self.len += 1;
-        // With two corners there is an edge each way.
+        // A polygon of two corners has an edge in each direction.
         for i in [behind, behind + 1] {
             self.edges[i] = self.edge(i);
         }
@@ -165,10 +167,10 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Edge {
-    /// Twice the area of the triangles over the edge, positive outside of the polygon; of points
-    /// seen from the first corner.
+    /// Twice the signed area of the triangles over the edge, positive outside of the polygon; for points
+    /// relative to the first corner.
     #[inline(always)]
-    fn beyond(&self, from_first: Vectors) -> f32x4 {
+    fn gain(&self, from_first: Vectors) -> f32x4 {
         from_first.dot(Vectors::splat(self.outward)) - f32x4::splat(self.offset)
     }
 }

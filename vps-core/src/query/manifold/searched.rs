@@ -1,46 +1,46 @@
-//! Contacts found in a tree, as far as they matter.
+//! Contact reduction during the search, without a list of all contacts.
 
 use glamx::Vec3;
 
 use super::ContactManifold;
-use super::buffer::Near;
-use super::collectors::{Bent, Spread};
+use super::buffer::CandidateBuffer;
+use super::collectors::{BestCandidate, OffPlane};
 use super::polygon::Polygon;
-use super::source::Source;
-use super::weighting::Closeness;
+use super::source::CandidateSource;
+use super::weighting::DepthWeighting;
 use crate::field::DistanceField;
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
-use crate::query::search::TOP;
+use crate::query::search::ROOT;
 use crate::query::work::CountWork;
-use crate::simd::multiversion::dispatch;
+use crate::simd::multiversion::multiversion;
 
-/// The contacts of a query, and what is known of them.
-struct Searched<'q, 't, F: ?Sized, W> {
+/// The contacts of a query, some of them buffered.
+struct SearchedCandidates<'q, 't, F: ?Sized, W> {
     query: &'q Query<'t, F, W>,
-    near: Near,
+    buffer: CandidateBuffer,
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// The manifold of the contact set, its area seen along the field's normal at the deepest
-    /// point: that of [`ContactManifold::spread`], but without looking at all contacts.
+    /// The manifold of the contact set, its area seen along the field's normal at the deepest point. It
+    /// equals that of [`ContactManifold::spread`], but not all contacts are visited.
     ///
-    /// One search finds the deepest contact and those that count enough, and if these are too few a
-    /// second one those that count a little; what counts less than them, or does not fit on the
-    /// stack, is searched for contact by contact, as far as it could be better.
+    /// One search finds the deepest contact and those of sufficient weight. If these are too few, a
+    /// second search finds those of low weight. Contacts of even lower weight, or that do not fit on the
+    /// stack, are searched for one by one as far as they could have a higher score.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
-        // Most bodies of a scene are apart; for them not even a place to keep contacts is made.
+        // Most bodies of a scene are apart: the buffer is not initialised for them.
         if !self.may_touch() {
             return ContactManifold::EMPTY;
         }
-        let closeness = Closeness {
+        let weighting = DepthWeighting {
             margin: self.margin,
             motion: self.motion,
         };
-        let mut near = Near::new(closeness);
-        self.find_from_hint(&mut near);
-        near.drop_shallow();
-        let deepest = near.deepest.found;
+        let mut buffer = CandidateBuffer::new(weighting);
+        self.collect_from_hint(&mut buffer);
+        buffer.discard_shallow();
+        let deepest = buffer.deepest.found;
         let along = |deepest: &Contact| {
             let at = self.rotation * deepest.position + self.translation;
             let inward = self.rotation.transpose() * self.field.inward_direction(at);
@@ -50,52 +50,58 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 inward
             }
         };
-        let mut source = Searched { query: self, near };
-        ContactManifold::pick(deepest, along, closeness, &mut source)
+        let mut source = SearchedCandidates {
+            query: self,
+            buffer,
+        };
+        ContactManifold::reduce(deepest, along, weighting, &mut source)
     }
 }
 
-impl<F, W, const N: usize> Source<N> for Searched<'_, '_, F, W>
+impl<F, W, const N: usize> CandidateSource<N> for SearchedCandidates<'_, '_, F, W>
 where
     F: DistanceField + ?Sized,
     W: CountWork,
 {
     fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact> {
-        let near = &mut self.near;
-        if polygon.least < near.least && !near.is_full && !near.has_reached {
-            near.reach_down();
-            dispatch(
+        let buffer = &mut self.buffer;
+        if polygon.penetration_threshold < buffer.threshold
+            && !buffer.is_full
+            && !buffer.includes_low_weights
+        {
+            buffer.lower_threshold();
+            multiversion(
                 #[inline(always)]
-                || self.query.search(TOP, near),
+                || self.query.search(ROOT, buffer),
             );
         }
-        let mut spread = Spread {
+        let mut best = BestCandidate {
             polygon,
-            below: f32::INFINITY,
-            least: f32::MIN_POSITIVE,
+            added_from: f32::INFINITY,
+            threshold: f32::MIN_POSITIVE,
             found: None,
         };
-        if !near.is_full {
-            dispatch(
+        if !buffer.is_full {
+            multiversion(
                 #[inline(always)]
-                || near.offer_to(self.query.tree, &mut spread),
+                || buffer.add_to(self.query.tree, &mut best),
             );
-            if near.least <= polygon.least {
-                return spread.found;
+            if buffer.threshold <= polygon.penetration_threshold {
+                return best.found;
             }
-            spread.below = near.least;
+            best.added_from = buffer.threshold;
         }
-        self.query.find(spread).found
+        self.query.collect(best).found
     }
 
-    fn is_bent(&self, polygon: &Polygon<N>) -> bool {
-        if self.near.is_full {
-            return self.query.find(Bent::new(polygon)).found;
+    fn is_curved(&self, polygon: &Polygon<N>) -> bool {
+        if self.buffer.is_full {
+            return self.query.collect(OffPlane::new(polygon)).found;
         }
-        let mut kept = self.near.kept[..self.near.len].iter();
-        kept.any(|group| {
-            let positions = group.positions(self.query.tree);
-            polygon.bent(positions, group.penetrations()).any()
+        let mut candidates = self.buffer.candidates[..self.buffer.len].iter();
+        candidates.any(|batch| {
+            let positions = batch.positions(self.query.tree);
+            polygon.off_plane(positions, batch.penetrations()).any()
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Where contacts are picked from.
+//! The sources of candidates: a list, and the trait that a search implements as well.
 
 use wide::f32x4;
 
@@ -6,32 +6,35 @@ use super::polygon::Polygon;
 use crate::query::contact::Contact;
 use crate::simd::Vectors;
 
-/// Contacts to pick from.
-pub(super) trait Source<const N: usize> {
-    /// The one that adds the most to a polygon.
+/// Candidates for a manifold.
+pub(super) trait CandidateSource<const N: usize> {
+    /// The candidate with the highest score for a polygon.
     fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact>;
 
-    /// Whether one that counts enough is off the plane through the deepest.
-    fn is_bent(&self, polygon: &Polygon<N>) -> bool;
+    /// Whether the field is curved: a candidate of sufficient weight is off the plane through the deepest
+    /// one.
+    fn is_curved(&self, polygon: &Polygon<N>) -> bool;
 }
 
-/// All contacts in a list.
-pub(super) struct Listed<'c>(pub(super) &'c [Contact]);
+/// A list of all contacts.
+pub(super) struct ListedCandidates<'c>(pub(super) &'c [Contact]);
 
-impl<const N: usize> Source<N> for Listed<'_> {
+impl<const N: usize> CandidateSource<N> for ListedCandidates<'_> {
     fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact> {
         best(self.0, |c| polygon.score(c))
     }
 
-    fn is_bent(&self, polygon: &Polygon<N>) -> bool {
+    fn is_curved(&self, polygon: &Polygon<N>) -> bool {
         self.0.iter().any(|c| {
             let position = Vectors::splat(c.position);
-            polygon.bent(position, f32x4::splat(c.penetration)).any()
+            polygon
+                .off_plane(position, f32x4::splat(c.penetration))
+                .any()
         })
     }
 }
 
-/// The first contact with the largest score; those without one are left out.
+/// The first contact with the largest score, among those with a score.
 pub(super) fn best(
     contacts: &[Contact],
     score: impl Fn(&Contact) -> Option<f32>,

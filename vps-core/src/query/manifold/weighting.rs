@@ -1,60 +1,62 @@
-//! How much a contact counts by its depth and by its normal.
+//! Weights of contacts by their depth, and the constants of contact reduction.
 
 use wide::f32x4;
 
-/// At which fraction of the margin further outside than the deepest a contact counts half, if the
-/// shell hardly moves.
-const CLOSE: f32 = 0.01;
+/// Distance outside of the deepest contact at which a contact has half weight while the shell rests, as
+/// a fraction of the margin.
+const RESTING_SCALE: f32 = 0.01;
 
-/// Contacts that count less than this part of what the deepest does are picked only when no others
-/// are left.
-pub(super) const LEAST_WEIGHT: f32 = 1.0 / 2.0;
+/// Weight, relative to the deepest contact, below which contacts only fill up the manifold.
+pub(super) const MIN_WEIGHT: f32 = 1.0 / 2.0;
 
-/// So many contacts hold a body on what is flat, whatever way it falls.
-pub(super) const STANDS_ON: usize = 4;
+/// Contacts needed to support a body on a plane, whichever way it tips.
+pub(super) const SUPPORT_CONTACTS: usize = 4;
 
-/// By which part of its distance from the deepest contact another one may be off the plane through
-/// that, and the field is flat: what a turn of its normal by 5 degrees makes on the way there.
-pub(super) const BENT: f32 = 0.04;
+/// Distance of a contact from the plane through the deepest one up to which the field counts as planar,
+/// relative to the distance between the two. A normal that turns by 5 degrees over that distance
+/// deviates by this much.
+pub(super) const PLANARITY_TOLERANCE: f32 = 0.04;
 
-/// Those that count this part of it or more are kept when such are needed.
-pub(super) const KEPT_WEIGHT: f32 = 1.0 / 256.0;
+/// Weight, relative to the deepest contact, down to which contacts are buffered to fill up the manifold.
+pub(super) const MIN_FILL_WEIGHT: f32 = 1.0 / 256.0;
 
-/// What a contact counts whose normal is square to that of the deepest.
-pub(super) const ASKEW: f32 = 0.25;
+/// Weight of a contact whose normal is perpendicular to that of the deepest one.
+pub(super) const MIN_NORMAL_WEIGHT: f32 = 0.25;
 
-/// How contacts outside of the solid count.
+/// The weights of contacts outside of the solid.
 #[derive(Clone, Copy)]
-pub(super) struct Closeness {
+pub(super) struct DepthWeighting {
     pub(super) margin: f32,
     pub(super) motion: Option<f32>,
 }
 
-impl Closeness {
-    /// What is no distance to speak of, in metres.
-    pub(super) fn close(&self) -> f32 {
-        (self.margin * CLOSE).max(f32::MIN_POSITIVE)
+impl DepthWeighting {
+    /// Distance in metres within which a contact counts as resting.
+    pub(super) fn resting_distance(&self) -> f32 {
+        (self.margin * RESTING_SCALE).max(f32::MIN_POSITIVE)
     }
 
-    /// How much further outside than the deepest one a contact counts half, in metres.
-    pub(super) fn half(&self, deepest: f32) -> f32 {
+    /// Distance in metres, measured from the deepest contact outwards, at which the weight is one half.
+    pub(super) fn half_weight_distance(&self, deepest: f32) -> f32 {
         let next = match self.motion {
             Some(motion) => motion,
-            // It came from further away than the margin.
-            None => outside(deepest),
+            // The shell came from beyond the margin.
+            None => distance_outside(deepest),
         };
-        next.min(self.margin).max(self.close())
+        next.min(self.margin).max(self.resting_distance())
     }
 
-    /// From which penetration on contacts count at least a part of what the deepest does.
-    pub(super) fn least_deep(&self, deepest: f32, part: f32) -> f32 {
-        let half = self.half(deepest);
-        let further = f32x4::splat(half * half * (1.0 / part - 1.0)).sqrt();
-        -(outside(deepest) + further.to_array()[0]).min(self.margin)
+    /// The penetration in metres from which on contacts have at least the weight `part`, relative to the
+    /// deepest one.
+    pub(super) fn min_penetration(&self, deepest: f32, part: f32) -> f32 {
+        let half_weight_distance = self.half_weight_distance(deepest);
+        let further =
+            f32x4::splat(half_weight_distance * half_weight_distance * (1.0 / part - 1.0)).sqrt();
+        -(distance_outside(deepest) + further.to_array()[0]).min(self.margin)
     }
 }
 
-/// How far outside of the solid something is, in metres.
-pub(super) fn outside(penetration: f32) -> f32 {
+/// Distance outside of the solid in metres, 0 inside.
+pub(super) fn distance_outside(penetration: f32) -> f32 {
     (-penetration).max(0.0)
 }
