@@ -2,7 +2,7 @@
 
 use glamx::{Mat3, Pose3, Vec3};
 
-/// An axis-aligned box, its corners in metres in the frame of whatever it bounds.
+/// An axis-aligned box, its corners in metres in the frame of the bounded object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// The corner with the smallest coordinates.

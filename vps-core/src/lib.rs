@@ -1,9 +1,8 @@
 //! Voxelmap-Pointshell collision detection for arbitrarily complex meshes.
 //!
 //! One body is a [`Voxelmap`], a signed distance field on a regular grid; the other is a
-//! pointshell, a cloud of surface points with inward normals, ordered in a
-//! [`PointSphereTree`]. A [`Query`] puts the two in a relative pose and finds the points that lie
-//! inside the field: contacts with their penetration, a penalty force and torque, and a
+//! pointshell, a cloud of surface points with inward normals in a [`PointSphereTree`]. A [`Query`]
+//! places the two in a relative pose and finds the points inside of the field: contacts with their penetration, a penalty force and torque, and a
 //! [`ContactManifold`] for a physics engine. The method is that of Sagardia, Stouraitis and
 //! Lopes e Silva (2014); sections and equations in this documentation are those of their paper.
 //!
@@ -26,39 +25,39 @@
 //! assert!((deepest.penetration - 0.01).abs() < 1e-6);
 //! ```
 //!
-//! # What to ask
-//! | you want | ask | costs |
+//! # Queries
+//! | question | call | cost |
 //! |---|---|---|
-//! | does it touch? | [`Query::touches`] | little: ends at the first contact |
+//! | do the bodies touch? | [`Query::touches`] | low: stops at the first contact |
 //! | the deepest contact δ | [`Query::deepest`] | branch and bound |
-//! | how far apart, and where | [`Query::closest`] | branch and bound |
-//! | a few contacts for an engine | [`Query::manifold`] | about that of the deepest |
+//! | separation and closest point | [`Query::closest`] | branch and bound |
+//! | a few contacts for a physics engine | [`Query::manifold`] | about that of the deepest |
 //! | one contact a segment (section 2.4) | [`Query::for_each_segment`] | branch and bound in each |
-//! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
-//! | those along the field's gradient, and how they change with the pose | [`Query::linear_wrench`] | a little more |
-//! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
-//! | as much as there is time for | [`Query::time_critical`] | what you allow |
-//! | the same sooner, from one step to the next | [`Query::with_hint`] | a little less |
-//! | a fast body not to be missed | [`Sweep::first_contact`] | some touches |
-//! | two bodies, either way or both | [`BodyPair`] | one or two queries |
+//! | force and torque (eqs. 2, 3) | [`Query::wrench`] | proportional to the contacts |
+//! | the same along the field's gradient, with the derivative by the pose | [`Query::linear_wrench`] | slightly more |
+//! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | proportional to the contacts |
+//! | an estimate in limited time | [`Query::time_critical`] | as allowed |
+//! | warm start from the previous step | [`Query::with_hint`] | slightly less |
+//! | the first contact of a fast body | [`Sweep::first_contact`] | several touch tests |
+//! | two bodies, with the shell of either or both | [`BodyPair`] | one or two queries |
 //!
-//! [`VirtualCoupling`] makes force and torque for a haptic device of it.
+//! [`VirtualCoupling`] turns contacts into force and torque for a haptic device.
 //!
 //! # Conventions
 //! * **Sign**: penetration is positive inside a solid and negative outside;
 //!   [`DistanceField::signed_distance`] is its negative.
 //! * **Normals** of shells and gradients of fields point inwards, to deeper penetration.
 //! * **Frames**: `shell` is the frame of the pointshell, `field` that of the distance field. A
-//!   pose takes shell coordinates to field coordinates. Both are those of their assets: the
+//!   pose transforms shell coordinates to field coordinates. Both are those of their assets: the
 //!   coordinates of the mesh less [`Asset::origin`], which is zero unless the mesh lies far away.
 //! * **Units** are SI: metres, newtons per metre of stiffness one, newton metres.
 //!
 //! # Features
-//! `std` (default) takes mathematics from the standard library, `libm` from the `libm` crate: one
-//! of the two must be on. `alloc` adds structures that own their data. A query never allocates.
+//! `std` (default) uses mathematics of the standard library, `libm` that of the `libm` crate; one of the
+//! two must be enabled. `alloc` adds structures that own their data. A query never allocates.
 //!
-//! With `std` on x86-64, queries use AVX2 and its bit counting where the processor has them, with
-//! the same results to the bit; without `std` they use what the crate is compiled for
+//! With `std` on x86-64, queries use AVX2 and bit manipulation instructions where the processor has them,
+//! with the same results to the bit; without `std` they use the instruction set of the target
 //! (`-C target-cpu`).
 
 #![no_std]

@@ -41,7 +41,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
 
     /// The contact with the largest penetration δ, the first of equally deep ones.
     ///
-    /// Branch and bound: clusters that cannot hold a deeper point are pruned.
+    /// Branch and bound: clusters that cannot contain a deeper point are pruned.
     pub fn deepest(&self) -> Option<Contact> {
         let mut deepest = DeepestContact::new(self.margin);
         self.collect_from_hint(&mut deepest);

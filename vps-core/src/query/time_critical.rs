@@ -11,7 +11,7 @@ use crate::query::search::{Collector, Found, ROOT};
 use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 
-/// What is known of the contact set when a query is stopped.
+/// The state of a time-critical query when it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The deepest of the tested points.

@@ -1,4 +1,4 @@
-//! Counts of what a query looks at.
+//! Counters of the work of a query.
 
 use core::cell::Cell;
 

@@ -3,7 +3,7 @@
 use super::layout::{BRICK_VALUES, CellGroup, RefinedCell, is_set, linear_index};
 use crate::storage::Storage;
 
-/// Which values a store holds.
+/// The layout of the values of a store.
 #[derive(Clone, Debug)]
 pub(super) enum Layout<'a> {
     /// One for each voxel.

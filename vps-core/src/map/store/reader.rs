@@ -89,7 +89,7 @@ impl<T: StoredValue> Reader<'_, T> {
         T::pair(self.values, first)
     }
 
-    /// Interpolation in the lattice, if that holds for all points.
+    /// Interpolation in the lattice, if all points lie in cells with a coarse neighbourhood.
     #[inline(always)]
     fn interpolated_in_lattice(
         &self,
