@@ -38,8 +38,8 @@ impl Aabb {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
-    /// Whether a body may lie within this box, given the smallest box around it in its own frame; `to_this`
-    /// transforms coordinates of that frame to those of this box.
+    /// Whether a body may lie within this box, given the smallest box around it in its own frame;
+    /// `to_this` transforms coordinates of that frame to those of this box.
     ///
     /// Never false for a body that does lie within: it touches all six faces of its box, so along any
     /// direction it extends at least as far as the nearest corner of the furthest face.

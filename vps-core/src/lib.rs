@@ -2,9 +2,10 @@
 //!
 //! One body is a [`Voxelmap`], a signed distance field on a regular grid; the other is a
 //! pointshell, a cloud of surface points with inward normals in a [`PointSphereTree`]. A [`Query`]
-//! places the two in a relative pose and finds the points inside of the field: contacts with their penetration, a penalty force and torque, and a
-//! [`ContactManifold`] for a physics engine. The method is that of Sagardia, Stouraitis and
-//! Lopes e Silva (2014); sections and equations in this documentation are those of their paper.
+//! places the two in a relative pose and finds the points inside of the field: contacts with their
+//! penetration, a penalty force and torque, and a [`ContactManifold`] for a physics engine. The
+//! method is that of Sagardia, Stouraitis and Lopes e Silva (2014); sections and equations in this
+//! documentation are those of their paper.
 //!
 //! ```
 //! use vps_core::{Cuboid, Pose3, Query, Vec3};
@@ -53,11 +54,12 @@
 //! * **Units** are SI: metres, newtons per metre of stiffness one, newton metres.
 //!
 //! # Features
-//! `std` (default) uses mathematics of the standard library, `libm` that of the `libm` crate; one of the
-//! two must be enabled. `alloc` adds structures that own their data. A query never allocates.
+//! `std` (default) uses mathematics of the standard library, `libm` that of the `libm` crate; one
+//! of the two must be enabled. `alloc` adds structures that own their data. A query never
+//! allocates.
 //!
-//! With `std` on x86-64, queries use AVX2 and bit manipulation instructions where the processor has them,
-//! with the same results to the bit; without `std` they use the instruction set of the target
+//! With `std` on x86-64, queries use AVX2 and bit manipulation instructions where the processor has
+//! them, with the same results to the bit; without `std` they use the instruction set of the target
 //! (`-C target-cpu`).
 
 #![no_std]

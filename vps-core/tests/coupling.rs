@@ -229,7 +229,8 @@ proptest! {
         }
     }
 
-    /// For any numbers, a step succeeds and the state is finite, or it fails and the state is unchanged.
+    /// For any numbers, a step succeeds and the state is finite, or it fails and the state is
+    /// unchanged.
     #[test]
     fn any_numbers_leave_a_finite_state(
         tool in tool(),
@@ -430,8 +431,8 @@ fn box_normals(point: Vec3) -> Vec3 {
     Vec3::new(rim(point.x), 0.0, rim(point.z))
 }
 
-/// The force that the device renders for a tool on level ground of a given stiffness in N/m³, on average
-/// over 20 cycles: first pressed on with 1 N, then moved along at 0.1 m/s.
+/// The force that the device renders for a tool on level ground of a given stiffness in N/m³, on
+/// average over 20 cycles: first pressed on with 1 N, then moved along at 0.1 m/s.
 fn felt_in_sliding(
     tree: &PointSphereTree<'_>,
     ground: &impl DistanceField,

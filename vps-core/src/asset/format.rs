@@ -185,9 +185,10 @@ impl SectionLayout {
 impl<'a> Asset<'a> {
     /// Reads the bytes of a `.vps` file in place: nothing is copied.
     ///
-    /// Their address must be a multiple of 8. [`include_asset!`](crate::include_asset) aligns the bytes of
-    /// a file, which `include_bytes!` does not; [`Aligned`](crate::Aligned) is an aligned buffer. Costs
-    /// one pass over the bytes for the checksum and one over the points for each level of the tree.
+    /// Their address must be a multiple of 8. [`include_asset!`](crate::include_asset) aligns the
+    /// bytes of a file, which `include_bytes!` does not; [`Aligned`](crate::Aligned) is an aligned
+    /// buffer. Costs one pass over the bytes for the checksum and one over the points for each
+    /// level of the tree.
     ///
     /// # Errors
     /// When the bytes are not a valid asset of this version, or not aligned.

@@ -15,9 +15,9 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Aligned<B: ?Sized>(pub B);
 
-/// The bytes of a file, as `include_bytes!` gives them, but at an address that is a multiple of 64: for
-/// a `.vps` file in the constant memory of a program, which [`Asset::from_bytes`](crate::Asset::from_bytes)
-/// reads in place.
+/// The bytes of a file, as `include_bytes!` gives them, but at an address that is a multiple of 64:
+/// for a `.vps` file in the constant memory of a program, which
+/// [`Asset::from_bytes`](crate::Asset::from_bytes) reads in place.
 ///
 /// The path is relative to the source file. The bytes are a `&'static [u8]`.
 ///

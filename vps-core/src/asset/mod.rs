@@ -13,12 +13,12 @@ pub use self::scale::ScaleError;
 use crate::map::Voxelmap;
 use crate::shell::PointSphereTree;
 
-/// The data made from one mesh before collision queries (section 2.1): its voxelmap, its pointshell in a
-/// point-sphere tree, and its mass properties, all in the frame of the asset.
+/// The data made from one mesh before collision queries (section 2.1): its voxelmap, its pointshell
+/// in a point-sphere tree, and its mass properties, all in the frame of the asset.
 #[derive(Clone, Debug)]
 pub struct Asset<'a> {
-    /// The origin of the asset's frame in the coordinates of the mesh it was built from, in metres; the
-    /// axes are the same. A point p of the mesh is at p - `origin` in the asset.
+    /// The origin of the asset's frame in the coordinates of the mesh it was built from, in metres;
+    /// the axes are the same. A point p of the mesh is at p - `origin` in the asset.
     ///
     /// It is zero unless the mesh lies so far from its own origin that 32-bit coordinates would be
     /// off by a thousandth of a voxel. A body whose pose places the mesh in the world places the

@@ -26,8 +26,8 @@ pub enum ScaleError {
 }
 
 impl Asset<'_> {
-    /// The solid scaled uniformly about the origin of the mesh. Copies all data. A solid scaled along a
-    /// single axis has other distances, and must be built from its mesh.
+    /// The solid scaled uniformly about the origin of the mesh. Copies all data. A solid scaled
+    /// along a single axis has other distances, and must be built from its mesh.
     ///
     /// # Errors
     /// When the factor is not positive, or leads out of the range of 32-bit numbers.

@@ -76,9 +76,10 @@ pub enum Violation {
     },
 }
 
-/// Checks the requirements for a ball, discs, and a point in all of them. `inside` lies in the unit ball
-/// and is scaled to the ball around `center`. The unit vector `normal` is the normal of the discs and of
-/// the point. The discs are flat or curved to either side, and thick enough to contain the point.
+/// Checks the requirements for a ball, discs, and a point in all of them. `inside` lies in the unit
+/// ball and is scaled to the ball around `center`. The unit vector `normal` is the normal of the
+/// discs and of the point. The discs are flat or curved to either side, and thick enough to contain
+/// the point.
 ///
 /// # Errors
 /// The first violation.
@@ -106,8 +107,8 @@ pub fn check(
     };
     for lane in 0..LANES {
         let above = height - discs.bulges[lane] * square;
-        // The flat disc stays at the centre. The next two are lifted halfway to the point, with the other
-        // half as their thickness; the last one is lifted to the point.
+        // The flat disc stays at the centre. The next two are lifted halfway to the point, with the
+        // other half as their thickness; the last one is lifted to the point.
         discs.lifts[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
         discs.thickness[lane] = (above - discs.lifts[lane]).abs() + rounding;
     }

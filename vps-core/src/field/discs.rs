@@ -39,8 +39,8 @@ impl Discs {
         }
     }
 
-    /// The support of a piece: the furthest it reaches from its centre in a unit direction, in metres. For
-    /// fields that bound one piece after the other.
+    /// The support of a piece: the furthest it reaches from its centre in a unit direction, in
+    /// metres. For fields that bound one piece after the other.
     #[inline]
     pub fn reach(&self, lane: usize, direction: Vec3) -> f32 {
         let radius = self.radii[lane];
@@ -74,8 +74,8 @@ impl Discs {
         }
     }
 
-    /// The most by which a linear function exceeds, in a piece, its value at the centre, given its gradient
-    /// per metre, which is no longer than `steepest`.
+    /// The most by which a linear function exceeds, in a piece, its value at the centre, given its
+    /// gradient per metre, which is no longer than `steepest`.
     #[inline(always)]
     pub(crate) fn rise(&self, gradients: Vectors, steepest: f32x4) -> f32x4 {
         let normals = Vectors::from(self.normals);

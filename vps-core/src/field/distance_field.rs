@@ -24,8 +24,8 @@ pub trait DistanceField {
     /// centre of a ball).
     fn inward_direction(&self, point: Vec3) -> Vec3;
 
-    /// An upper bound in metres on [`penetration`](Self::penetration) for every point of the ball around
-    /// `center`, with any normal. The tighter it is, the more a query can prune.
+    /// An upper bound in metres on [`penetration`](Self::penetration) for every point of the ball
+    /// around `center`, with any normal. The tighter it is, the more a query can prune.
     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32;
 
     /// A box that contains the solid.
@@ -47,9 +47,9 @@ pub trait DistanceField {
         core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
     }
 
-    /// [`penetrations`](Self::penetrations), the same to the bit, and their gradients ∇V per metre, which
-    /// point inwards. The gradient at a point outside of the solid may be zero. The default is
-    /// [`inward_direction`](Self::inward_direction).
+    /// [`penetrations`](Self::penetrations), the same to the bit, and their gradients ∇V per metre,
+    /// which point inwards. The gradient at a point outside of the solid may be zero. The default
+    /// is [`inward_direction`](Self::inward_direction).
     #[inline(always)]
     fn penetrations_and_gradients(
         &self,
@@ -67,8 +67,8 @@ pub trait DistanceField {
     }
 
     /// Upper bounds on the [`penetration`](Self::penetration) in several pieces, each at most the
-    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field with known curvature
-    /// can exploit the shape of a piece; the default takes the balls.
+    /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field with known
+    /// curvature can exploit the shape of a piece; the default takes the balls.
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         core::array::from_fn(|i| self.penetration_bound(discs.centers.get(i), discs.radii[i]))

@@ -1,15 +1,16 @@
 //! Extrapolation of a map beyond its grid.
 //!
-//! The grid G is a box. Let c be its closest point to a point p outside; all of G then lies beyond the
-//! plane through c perpendicular to p − c. The solid lies in a box B within G. For any point q of the
-//! solid, with w = p − c (zero along axes on which p is within the grid) and the gap g from B to G along
-//! the other axes,
+//! The grid G is a box. Let c be its closest point to a point p outside; all of G then lies beyond
+//! the plane through c perpendicular to p − c. The solid lies in a box B within G. For any point q
+//! of the solid, with w = p − c (zero along axes on which p is within the grid) and the gap g from
+//! B to G along the other axes,
 //!
 //! |p − q|² = |c − q|² + |w|² + 2 w·(c − q) ≥ d(c)² + |w|² + 2 w·g,
 //!
-//! so √(d(c)² + w·(w + 2 g)) is a lower bound on the distance of p. It is exact where the face of B is
-//! the surface, and continues d(c) without a jump. A map samples it outside of the grid, with the
-//! sampled value at c for d(c). A point outside of the grid is outside of the solid for any value there.
+//! so √(d(c)² + w·(w + 2 g)) is a lower bound on the distance of p. It is exact where the face of B
+//! is the surface, and continues d(c) without a jump. A map samples it outside of the grid, with
+//! the sampled value at c for d(c). A point outside of the grid is outside of the solid for any
+//! value there.
 
 use glamx::Vec3;
 use wide::f32x4;
@@ -56,8 +57,8 @@ impl Extrapolation {
         -(depth * depth + further).sqrt()
     }
 
-    /// The gradients of [`penetrations`](Self::penetrations), per metre, given penetrations and gradients
-    /// at the closest points of the grid.
+    /// The gradients of [`penetrations`](Self::penetrations), per metre, given penetrations and
+    /// gradients at the closest points of the grid.
     #[inline(always)]
     pub(crate) fn gradients(&self, at_clamped: f32x4, gradients: Vectors) -> Vectors {
         let depth = at_clamped.fast_min(f32x4::ZERO);
@@ -75,13 +76,14 @@ impl Extrapolation {
         }
     }
 
-    /// Upper bounds on [`penetrations`](Self::penetrations) in balls of `radii` around the points, given
-    /// that no penetration in the grid exceeds `at_clamped` plus the distance from the closest point.
-    /// Infinite for a ball that reaches the grid where penetrations may be positive.
+    /// Upper bounds on [`penetrations`](Self::penetrations) in balls of `radii` around the points,
+    /// given that no penetration in the grid exceeds `at_clamped` plus the distance from the
+    /// closest point. Infinite for a ball that reaches the grid where penetrations may be positive.
     ///
-    /// For two points, the distance of the closest points in the grid and the difference of the offsets
-    /// are the legs of a right triangle whose hypotenuse is at most the distance of the two points. So the
-    /// vector of d(c) and of w + g moves by at most the radius, and its length shrinks by at most that.
+    /// For two points, the distance of the closest points in the grid and the difference of the
+    /// offsets are the legs of a right triangle whose hypotenuse is at most the distance of the two
+    /// points. So the vector of d(c) and of w + g moves by at most the radius, and its length
+    /// shrinks by at most that.
     #[inline(always)]
     pub(crate) fn bounds(&self, at_clamped: f32x4, radii: f32x4) -> f32x4 {
         let depth = at_clamped.fast_min(f32x4::ZERO);

@@ -27,11 +27,12 @@ pub(crate) struct LinearBound {
 
 /// Pieces near the border of a grid.
 ///
-/// A piece is bounded by linear functions, one for all its points that leave the grid along the same
-/// axes. In the grid it is the given [`LinearBound`]. Outside, the vector z of d(c) and of w + g has the
-/// length √(V² + |g|²), which is at least e·z for any unit vector e. First e is taken along the z of the
-/// centre; then it is taken along the z of the point of the piece that comes closest for the first e. For
-/// points that leave along an axis on which others do not, only |V| ≥ d(c) is used.
+/// A piece is bounded by linear functions, one for all its points that leave the grid along the
+/// same axes. In the grid it is the given [`LinearBound`]. Outside, the vector z of d(c) and of w +
+/// g has the length √(V² + |g|²), which is at least e·z for any unit vector e. First e is taken
+/// along the z of the centre; then it is taken along the z of the point of the piece that comes
+/// closest for the first e. For points that leave along an axis on which others do not, only |V| ≥
+/// d(c) is used.
 #[derive(Clone, Copy)]
 pub(crate) struct GridBorder {
     /// From the closest points of the grid to the centres: zero along axes within the grid.
@@ -69,8 +70,8 @@ impl GridBorder {
         }
     }
 
-    /// The lanes whose piece straddles the border along at most one axis: [`bounds`](Self::bounds) holds
-    /// only for these.
+    /// The lanes whose piece straddles the border along at most one axis: [`bounds`](Self::bounds)
+    /// holds only for these.
     #[inline(always)]
     pub(crate) fn straddles_at_most_one_axis(&self) -> f32x4 {
         let Vectors { x, y, z } = self.straddling;

@@ -12,8 +12,8 @@ use crate::query::search::{Collector, Found};
 use crate::query::work::CountWork;
 use crate::simd::Vectors;
 
-/// The wrench of a potential with its derivative by the pose of the shell's body. An implicit integrator
-/// needs both to stay stable with contacts of any stiffness.
+/// The wrench of a potential with its derivative by the pose of the shell's body. An implicit
+/// integrator needs both to stay stable with contacts of any stiffness.
 ///
 /// A contact stores the energy w V² / 2 for stiffness one, w being its [`Weight`]. With
 /// n = −∇V, the outward gradient of the field at the contact, it exerts the force w V n. After a
@@ -100,9 +100,9 @@ impl Mul<f32> for LinearWrench {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// Force along the gradient of the field and torque about `center` on the shell's body, with their
-    /// derivative by the pose; all in the shell frame, for stiffness one. Where the shell's normals equal
-    /// those of the field, the force equals that of [`wrench`](Self::wrench).
+    /// Force along the gradient of the field and torque about `center` on the shell's body, with
+    /// their derivative by the pose; all in the shell frame, for stiffness one. Where the shell's
+    /// normals equal those of the field, the force equals that of [`wrench`](Self::wrench).
     pub fn linear_wrench(&self, center: Vec3, weight: Weight) -> LinearWrench {
         let penetration_threshold = (-self.margin).max(0.0);
         let none = [Vectors::splat(Vec3::ZERO); 3];

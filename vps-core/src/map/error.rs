@@ -6,7 +6,8 @@ use crate::map::accuracy::Accuracy;
 /// Why a [`Voxelmap`](crate::Voxelmap) was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VoxelmapError {
-    /// The number of values does not match the dimensions of a dense store, or the cells of a sparse one.
+    /// The number of values does not match the dimensions of a dense store, or the cells of a
+    /// sparse one.
     #[error("{values} values in a store that needs {expected}")]
     ValueCount {
         /// Values given.

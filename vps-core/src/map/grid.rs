@@ -150,8 +150,8 @@ impl Grid {
         (Voxels { x, y, z }, Vectors { x: u, y: v, z: w })
     }
 
-    /// The voxel at a position in voxels. The cast saturates, so a NaN becomes voxel 0 and no index leaves
-    /// the grid.
+    /// The voxel at a position in voxels. The cast saturates, so a NaN becomes voxel 0 and no index
+    /// leaves the grid.
     #[inline]
     fn clamped(&self, at: Vec3) -> [u32; 3] {
         let clamp = |at: f32, count: u32| (at as u32).min(count - 1);

@@ -6,8 +6,8 @@ use glamx::Vec3;
 
 use crate::map::voxelmap::Voxelmap;
 
-/// Quadrilaterals over vertices in metres, in the frame of the map, counter-clockwise seen from outside.
-/// They need not be planar.
+/// Quadrilaterals over vertices in metres, in the frame of the map, counter-clockwise seen from
+/// outside. They need not be planar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceMesh {
     /// In metres.
@@ -38,8 +38,9 @@ impl SurfaceMesh {
 const NO_VERTEX: u32 = u32::MAX;
 
 impl Voxelmap<'_> {
-    /// The zero level set by surface nets: a vertex in every cell of eight voxel centres with both signs,
-    /// and a quadrilateral across every edge between two centres that differ in sign. Visits all voxels.
+    /// The zero level set by surface nets: a vertex in every cell of eight voxel centres with both
+    /// signs, and a quadrilateral across every edge between two centres that differ in sign. Visits
+    /// all voxels.
     pub fn surface_mesh(&self) -> SurfaceMesh {
         let grid = self.grid();
         let [nx, ny, nz] = grid.dims();
@@ -58,7 +59,8 @@ impl Voxelmap<'_> {
                     });
                 }
             }
-            // Edges along x and y lie between this layer of cells and the one below, edges along z within it.
+            // Edges along x and y lie between this layer of cells and the one below, edges along z
+            // within it.
             for y in 0..ny.saturating_sub(1) {
                 for x in 0..nx.saturating_sub(1) {
                     let cells = |[dx, dy]: [u32; 2], layer: &[u32]| {

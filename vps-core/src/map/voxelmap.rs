@@ -15,7 +15,8 @@ use crate::storage::Storage;
 ///
 /// With σ = s, the voxel size, the values are layers; with σ = λ = 10^-p they are distances
 /// truncated to the precision p (eq. 1); with σ = 1 m they are floating-point distances. A map is
-/// sampled through one of its views, which differ in the value between the centres: [`local`](Self::local), [`linear`](Self::linear) and [`trilinear`](Self::trilinear).
+/// sampled through one of its views, which differ in the value between the centres:
+/// [`local`](Self::local), [`linear`](Self::linear) and [`trilinear`](Self::trilinear).
 #[derive(Clone, Debug)]
 pub struct Voxelmap<'a> {
     grid: Grid,
@@ -33,13 +34,14 @@ pub const UNKNOWN_BEND: u8 = u8::MAX;
 pub const BEND_STEPS: f32 = 127.0;
 
 impl<'a> Voxelmap<'a> {
-    /// A map over `grid` with the values of `store` in units of `sigma` metres. `solid` is a box around the
-    /// mesh the map was made from, and lies between the outermost voxel centres.
+    /// A map over `grid` with the values of `store` in units of `sigma` metres. `solid` is a box
+    /// around the mesh the map was made from, and lies between the outermost voxel centres.
     ///
-    /// `bends` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z), valid
-    /// in it and in the cells around it. In steps of s / 127, it bounds from above the second differences
-    /// of the values along an axis, and the deviation from a plane of any square of four neighbours; 255
-    /// where it is unknown. It makes queries faster, and must be correct. It may be empty.
+    /// `bends` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z),
+    /// valid in it and in the cells around it. In steps of s / 127, it bounds from above the second
+    /// differences of the values along an axis, and the deviation from a plane of any square of
+    /// four neighbours; 255 where it is unknown. It makes queries faster, and must be correct. It
+    /// may be empty.
     ///
     /// # Errors
     /// When the parts are inconsistent.

@@ -31,17 +31,17 @@ impl<'q> Body<'q, Trilinear<'q>> {
 /// Which of two bodies provides the shell for the field of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shells {
-    /// The body with fewer points, the first one if both have as many: the paper's rule. If the smaller
-    /// body may lie within the box of the other one, and thus in its solid, it is the smaller body: the
-    /// shell of the other one would not meet it.
+    /// The body with fewer points, the first one if both have as many: the paper's rule. If the
+    /// smaller body may lie within the box of the other one, and thus in its solid, it is the
+    /// smaller body: the shell of the other one would not meet it.
     #[default]
     FewerPoints,
     /// The first body.
     First,
     /// The second body.
     Second,
-    /// Both, one after the other. Finds contacts that only one shell meets, such as an edge of one body
-    /// between the points of the other. Each counts half in a force.
+    /// Both, one after the other. Finds contacts that only one shell meets, such as an edge of one
+    /// body between the points of the other. Each counts half in a force.
     Both,
 }
 

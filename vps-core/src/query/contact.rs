@@ -30,8 +30,8 @@ impl Contact {
         }
     }
 
-    /// Whether it is deeper than another contact, if there is one. Of equally deep ones the first point
-    /// counts as deeper.
+    /// Whether it is deeper than another contact, if there is one. Of equally deep ones the first
+    /// point counts as deeper.
     #[inline]
     pub(crate) fn is_deeper_than(&self, other: Option<&Self>) -> bool {
         other.is_none_or(|other| {

@@ -9,10 +9,10 @@ use crate::simd::Vectors;
 
 /// A pointshell posed in a distance field (sections 2.2 to 2.4).
 ///
-/// A point is in contact when its penetration is at least 0, or with a margin at least −margin. Every
-/// query gives the same result as a test of all points
-/// ([`for_each_contact_flat`](Self::for_each_contact_flat)), but prunes clusters that cannot change it.
-/// With a pose that is not finite there are no contacts.
+/// A point is in contact when its penetration is at least 0, or with a margin at least −margin.
+/// Every query gives the same result as a test of all points
+/// ([`for_each_contact_flat`](Self::for_each_contact_flat)), but prunes clusters that cannot change
+/// it. With a pose that is not finite there are no contacts.
 #[derive(Debug)]
 pub struct Query<'q, F: ?Sized, W = ()> {
     pub(crate) tree: &'q PointSphereTree<'q>,
@@ -79,16 +79,17 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         Self { margin, ..self }
     }
 
-    /// Tells [`manifold`](Self::manifold) how far the shell has moved, towards the solid or away from it,
-    /// since the previous query, in metres; 0 by default. `None` if it was further away than the margin:
-    /// the shell is then assumed to move on by the separation of its deepest point.
+    /// Tells [`manifold`](Self::manifold) how far the shell has moved, towards the solid or away
+    /// from it, since the previous query, in metres; 0 by default. `None` if it was further away
+    /// than the margin: the shell is then assumed to move on by the separation of its deepest
+    /// point.
     pub fn with_motion(self, motion: Option<f32>) -> Self {
         Self { motion, ..self }
     }
 
-    /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and
-    /// [`manifold`](Self::manifold) test a point first that is likely to be deep, such as the deepest of
-    /// the previous step (a warm start). The result is the same. An index out of range is ignored.
+    /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and [`manifold`](Self::manifold)
+    /// test a point first that is likely to be deep, such as the deepest of the previous step (a
+    /// warm start). The result is the same. An index out of range is ignored.
     pub fn with_hint(self, point: u32) -> Self {
         let hint = Some(point).filter(|&p| (p as usize) < self.tree.point_count());
         Self { hint, ..self }

@@ -21,8 +21,8 @@ pub(crate) trait Collector {
     /// and contacts come in the order of the points.
     const BEST_FIRST: bool;
 
-    /// Whether all contacts are collected. The children of a cluster that probably lies in the field as
-    /// a whole are then visited without bounding them.
+    /// Whether all contacts are collected. The children of a cluster that probably lies in the
+    /// field as a whole are then visited without bounding them.
     const COLLECTS_ALL: bool = false;
 
     /// Whether [`add`](Self::add) needs the gradient of the field at each contact.
@@ -150,8 +150,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         );
     }
 
-    /// Descends from a cluster to level `last`, depth first. Calls `visit` with the index and the bound of
-    /// each cluster there that may matter, until it returns false.
+    /// Descends from a cluster to level `last`, depth first. Calls `visit` with the index and the
+    /// bound of each cluster there that may matter, until it returns false.
     #[inline(always)]
     pub(crate) fn descend<C: Collector>(
         &self,
@@ -247,8 +247,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             )
     }
 
-    /// The discs of the first [`LANES`] clusters in the shell frame, and upper bounds on the penetration
-    /// in them. If there are fewer, the last one is repeated.
+    /// The discs of the first [`LANES`] clusters in the shell frame, and upper bounds on the
+    /// penetration in them. If there are fewer, the last one is repeated.
     #[inline(always)]
     fn penetration_bounds(&self, clusters: &[Cluster]) -> (Discs, [f32; LANES]) {
         let [a, b, c, d] = padded(clusters, |four| {

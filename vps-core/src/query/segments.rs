@@ -10,8 +10,8 @@ use crate::simd::multiversion::multiversion;
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Calls `visit` with the deepest contact of each cluster of a level that has one, in the order
-    /// of the clusters: the segmented traverse (section 2.4). The arguments are the index of the cluster
-    /// in its level, and the first of equally deep contacts.
+    /// of the clusters: the segmented traverse (section 2.4). The arguments are the index of the
+    /// cluster in its level, and the first of equally deep contacts.
     ///
     /// Level 1 has one cluster, and its contact is the [`deepest`](Self::deepest) of all. A level
     /// below the leaves counts as that of the leaves.

@@ -73,9 +73,9 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
     /// `tolerance` metres of motion; `None` if none is during the whole motion, or the motion is
     /// not finite.
     ///
-    /// Bisection: an interval is discarded if nothing touches at its middle with all balls and points
-    /// inflated by their motion up to its ends. Costs about two touch tests a bisection, up to the first
-    /// contact. A tolerance below a four-millionth of the motion is not reached.
+    /// Bisection: an interval is discarded if nothing touches at its middle with all balls and
+    /// points inflated by their motion up to its ends. Costs about two touch tests a bisection, up
+    /// to the first contact. A tolerance below a four-millionth of the motion is not reached.
     pub fn first_contact(&self, tolerance: f32) -> Option<Impact> {
         // Upper bound on the speed of any point, in metres a step.
         let speed = self.translation.length() + self.angle.abs() * self.tree.reach();

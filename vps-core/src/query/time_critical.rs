@@ -19,8 +19,8 @@ pub struct Estimate {
     /// Upper bound on the penetration of any contact, in metres. Once the query is complete it is that
     /// of the deepest contact, or −margin if there is none.
     pub penetration_bound: f32,
-    /// Penalty force and torque with [`Weight::Area`], estimated from the last complete level: all of a
-    /// cluster is taken to be as deep as its parent point.
+    /// Penalty force and torque with [`Weight::Area`], estimated from the last complete level: all
+    /// of a cluster is taken to be as deep as its parent point.
     pub wrench: Wrench,
     /// The last complete level, 0 for none.
     pub level: u32,
@@ -29,13 +29,13 @@ pub struct Estimate {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// Time-critical query, from coarse to fine: the parent points of one level after the other (section
-    /// 2.1.2), and finally all points. The paper's future work.
+    /// Time-critical query, from coarse to fine: the parent points of one level after the other
+    /// (section 2.1.2), and finally all points. The paper's future work.
     ///
-    /// `keep_going` is called before each point (in the last pass, before the points of each leaf) with
-    /// the number of points tested so far, and ends the query by `false`: `|tested| tested < 500`, or
-    /// `|_| clock() < deadline`. The torque is about `center`, in the shell frame. With more time the
-    /// deepest contact does not get shallower and the bound does not rise.
+    /// `keep_going` is called before each point (in the last pass, before the points of each leaf)
+    /// with the number of points tested so far, and ends the query by `false`: `|tested| tested <
+    /// 500`, or `|_| clock() < deadline`. The torque is about `center`, in the shell frame. With
+    /// more time the deepest contact does not get shallower and the bound does not rise.
     ///
     /// Needs no memory: each level is reached from the root again, which tests a few times as many
     /// spheres as [`for_each_contact`](Self::for_each_contact).

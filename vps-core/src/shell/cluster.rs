@@ -19,8 +19,8 @@ pub struct Cluster {
     pub thickness: f32,
     /// Height of the apex above the centre, in metres along the normal.
     pub lift: f32,
-    /// Half curvature of the paraboloid, per metre, positive towards the normal: at a distance r from the
-    /// axis its height is lift + bulge × r².
+    /// Half curvature of the paraboloid, per metre, positive towards the normal: at a distance r
+    /// from the axis its height is lift + bulge × r².
     pub bulge: f32,
     /// The first child: the index of a cluster within the next level, or on the leaf level of a point.
     pub first: u32,
@@ -44,8 +44,8 @@ impl Cluster {
         )
     }
 
-    /// Cylindrical coordinates of a point: the squared distance from the axis in m², and the height above
-    /// the centre in metres along the normal.
+    /// Cylindrical coordinates of a point: the squared distance from the axis in m², and the height
+    /// above the centre in metres along the normal.
     pub fn around(&self, point: Vec3) -> (f32, f32) {
         let normal = Vec3::from_array(self.normal);
         let from_center = point - Vec3::from_array(self.center);

@@ -31,12 +31,12 @@ pub enum TreeError {
     /// The normal of a cluster is not of length one.
     #[error("the normal of cluster {0} is not of length one")]
     ClusterNormal(usize),
-    /// The level starts must begin at 0, increase, and end with the number of clusters; the top level has
-    /// one cluster.
+    /// The level starts must begin at 0, increase, and end with the number of clusters; the top
+    /// level has one cluster.
     #[error("the levels do not divide the clusters, or are more than 32")]
     Levels,
-    /// The children of the clusters of a level must be the next level (or the points), each once and in
-    /// order.
+    /// The children of the clusters of a level must be the next level (or the points), each once
+    /// and in order.
     #[error("the children of cluster {0} are not the next in order")]
     Children(usize),
     /// The parent point belongs to another cluster.

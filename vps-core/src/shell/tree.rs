@@ -26,10 +26,10 @@ pub struct PointSphereTree<'a> {
 }
 
 impl<'a> PointSphereTree<'a> {
-    /// A tree over `points` (metres, shell frame) with unit inward `normals` and the `areas` of the surface
-    /// they represent (m²), all in the order of the leaves. `clusters` holds one level after the other
-    /// from the top; level L is `level_starts[L - 1]..level_starts[L]`, so there is one start more than
-    /// levels.
+    /// A tree over `points` (metres, shell frame) with unit inward `normals` and the `areas` of the
+    /// surface they represent (m²), all in the order of the leaves. `clusters` holds one level
+    /// after the other from the top; level L is `level_starts[L - 1]..level_starts[L]`, so there is
+    /// one start more than levels.
     ///
     /// Checks all requirements of queries, in one pass over the points for each level.
     ///
@@ -160,8 +160,8 @@ impl<'a> PointSphereTree<'a> {
         first as usize..last as usize + 1
     }
 
-    /// Size of points, normals, areas, clusters and levels in memory in bytes; the same in a file, without
-    /// padding.
+    /// Size of points, normals, areas, clusters and levels in memory in bytes; the same in a file,
+    /// without padding.
     pub fn byte_len(&self) -> usize {
         size_of_val(&*self.points)
             + size_of_val(&*self.normals)

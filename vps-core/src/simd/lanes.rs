@@ -5,8 +5,8 @@ use wide::f32x4;
 /// How many points or discs a [`DistanceField`](crate::DistanceField) is asked for at a time.
 pub const LANES: usize = 4;
 
-/// Calls `read` with the first [`LANES`] of `all`, which must not be empty. If there are fewer, the last
-/// one is repeated.
+/// Calls `read` with the first [`LANES`] of `all`, which must not be empty. If there are fewer, the
+/// last one is repeated.
 #[inline(always)]
 pub(crate) fn padded<T: Copy, R>(all: &[T], read: impl FnOnce(&[T; LANES]) -> R) -> R {
     // By reference and in one place: copied, or read in two places, it takes twice the time.

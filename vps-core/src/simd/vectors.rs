@@ -28,7 +28,8 @@ impl Points {
         }
     }
 
-    /// Reads [`LANES`] of `points` from index `first` on. If there are fewer, the last one is repeated.
+    /// Reads [`LANES`] of `points` from index `first` on. If there are fewer, the last one is
+    /// repeated.
     ///
     /// # Panics
     /// If there is no point from there on.

@@ -31,8 +31,8 @@ impl ErrorModel {
         )
     }
 
-    /// Upper bounds on samples, given upper bounds `exact` on samples of values without error. `weight` is
-    /// the factor by which the error of a value enters a sample.
+    /// Upper bounds on samples, given upper bounds `exact` on samples of values without error.
+    /// `weight` is the factor by which the error of a value enters a sample.
     #[inline(always)]
     pub(super) fn upper_bound(&self, exact: f32x4, weight: f32x4) -> f32x4 {
         let near = exact + weight * self.accuracy.near_m;

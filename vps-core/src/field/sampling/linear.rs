@@ -14,11 +14,11 @@ use crate::simd::{LANES, Points};
 /// per voxel between the values on both sides of the centre C.
 ///
 /// Reads seven values a point. Near sharp edges the error is that of the map plus at most half the
-/// diagonal of a voxel and three halves of an edge, (√3 + 3) s / 2. Over a planar part of the surface it
-/// is that of the map alone, up to three times because of the extrapolation. Discontinuous between
-/// voxels where the field is curved.
+/// diagonal of a voxel and three halves of an edge, (√3 + 3) s / 2. Over a planar part of the
+/// surface it is that of the map alone, up to three times because of the extrapolation.
+/// Discontinuous between voxels where the field is curved.
 #[derive(Clone, Copy, Debug)]
-pub struct Linear<'m>(pub(crate) &'m Voxelmap<'m>);
+pub struct Linear<'m>(&'m Voxelmap<'m>);
 
 impl Voxelmap<'_> {
     /// The map sampled as in eq. 5: the value of the voxel plus its gradient times the offset
@@ -77,7 +77,8 @@ impl DistanceField for Linear<'_> {
 
     #[inline]
     fn error_bound(&self) -> f32 {
-        // One error of the value at the centre, and three halves of that of a difference of two values.
+        // The error of the value at the centre, and three halves of that of a difference of two
+        // values.
         4.0 * self.0.accuracy().near_m + (HALF_DIAGONAL + 1.5) * self.0.grid().voxel_size()
     }
 }

@@ -11,10 +11,11 @@ use crate::map::Voxelmap;
 
 /// A [`Voxelmap`] sampled as in eq. 4: V(P) = n·e + vσ with e = C − P.
 ///
-/// Reads one value a point. The error is that of the map plus at most the diagonal of a voxel, √3 s: half
-/// of it by the distance to the centre C, half of it by the local part n·e. Discontinuous between voxels.
+/// Reads one value a point. The error is that of the map plus at most the diagonal of a voxel, √3
+/// s: half of it by the distance to the centre C, half of it by the local part n·e. Discontinuous
+/// between voxels.
 #[derive(Clone, Copy, Debug)]
-pub struct LocalPenetration<'m>(pub(crate) &'m Voxelmap<'m>);
+pub struct LocalPenetration<'m>(&'m Voxelmap<'m>);
 
 impl Voxelmap<'_> {
     /// The map sampled as in eq. 4: the value of the voxel plus the depth within the voxel along

@@ -18,7 +18,7 @@ use crate::simd::{LANES, Points, Vectors, Voxels};
 /// Reads eight values a point. The error is that of the map plus at most half the diagonal of a voxel,
 /// √3/2 s; over a planar part of the surface it is that of the map alone. Continuous.
 #[derive(Clone, Copy, Debug)]
-pub struct Trilinear<'m>(pub(crate) &'m Voxelmap<'m>);
+pub struct Trilinear<'m>(&'m Voxelmap<'m>);
 
 impl Voxelmap<'_> {
     /// The map sampled by trilinear interpolation of the eight values around a point: continuous
@@ -54,9 +54,10 @@ impl Trilinear<'_> {
         f32x4::splat(square).sqrt().to_array()[0]
     }
 
-    /// The largest error of [`penetration`](DistanceField::penetration) at `point`, in metres. Within the
-    /// grid it is the [`overestimate_bound_at`](Self::overestimate_bound_at). Outside, where distances
-    /// may be underestimated, it is larger by the detour through the closest point of the grid.
+    /// The largest error of [`penetration`](DistanceField::penetration) at `point`, in metres.
+    /// Within the grid it is the [`overestimate_bound_at`](Self::overestimate_bound_at). Outside,
+    /// where distances may be underestimated, it is larger by the detour through the closest point
+    /// of the grid.
     pub fn error_bound_at(&self, point: Vec3) -> f32 {
         let to_grid = self.0.grid().center_bounds().distance_outside(point);
         let sampled = self.sampled(Vectors::splat(point));
@@ -70,10 +71,11 @@ impl Trilinear<'_> {
         self.overestimate_bound_at(point) + underestimate
     }
 
-    /// The most by which the [signed distance](DistanceField::signed_distance) at `point` exceeds the
-    /// exact one, in metres. It is the [error bound](DistanceField::error_bound) of the field close to
-    /// the surface, and includes the larger error of values ([`Accuracy::far_m`](crate::Accuracy::far_m)) beyond the narrow band.
-    /// Outside of the grid it is that of the closest point of the grid.
+    /// The most by which the [signed distance](DistanceField::signed_distance) at `point` exceeds
+    /// the exact one, in metres. It is the [error bound](DistanceField::error_bound) of the field
+    /// close to the surface. Beyond the narrow band it includes the larger error of values
+    /// ([`Accuracy::far_m`](crate::Accuracy::far_m)). Outside of the grid it is that of the closest
+    /// point of the grid.
     pub fn overestimate_bound_at(&self, point: Vec3) -> f32 {
         let sampled = self.sampled(Vectors::splat(point)).values.to_array()[0];
         HALF_DIAGONAL * self.voxel_size() + self.value_error(sampled)
@@ -130,24 +132,27 @@ impl Trilinear<'_> {
     /// Upper bounds for discs, the smallest of up to three.
     ///
     /// The first is a Lipschitz bound: the exact penetration changes by at most the distance. The
-    /// interpolated value at a point is the average of the values around it, with weights for which the
-    /// average of their positions is the point, as if each coordinate were rounded up or down at random.
-    /// If the coordinates of two points a distance r apart are rounded by the same random numbers, the
-    /// two positions differ on average by at most √3 r, and by at most √(r² + 3/4 s²), since along each
-    /// axis their difference takes one of two values s apart around that of the points. Errors of values
-    /// count only where the positions differ, with a probability of at most √3 r / s.
+    /// interpolated value at a point is the average of the values around it, with weights for which
+    /// the average of their positions is the point, as if each coordinate were rounded up or down
+    /// at random. If the coordinates of two points a distance r apart are rounded by the same
+    /// random numbers, the two positions differ on average by at most √3 r, and by at most √(r² +
+    /// 3/4 s²), since along each axis their difference takes one of two values s apart around that
+    /// of the points. Errors of values count only where the positions differ, with a probability of
+    /// at most √3 r / s.
     ///
-    /// The second is a curvature bound: the disc is thin, and the map bounds its second differences.
-    /// Along the line from the centre to a point r voxels away, the slope changes at each face between
-    /// voxels by at most the bound B, at no more than r + 1 faces along each axis, and between faces by
-    /// the twist of the squares. In total the point exceeds the linear function at the centre by at most
-    /// (r² / 2 + √3 r + r²) B. [`GridBorder`] continues it outside of the grid.
+    /// The second is a curvature bound: the disc is thin, and the map bounds its second
+    /// differences. Along the line from the centre to a point r voxels away, the slope changes at
+    /// each face between voxels by at most the bound B, at no more than r + 1 faces along each
+    /// axis, and between faces by the twist of the squares. In total the point exceeds the linear
+    /// function at the centre by at most (r² / 2 + √3 r + r²) B. [`GridBorder`] continues it
+    /// outside of the grid.
     ///
-    /// The third is for points outside of the grid. The sampled value there is at most that at the closest
-    /// point of the grid, so the first bound holds; [`Extrapolation::bounds`] accounts for the decrease
-    /// with the distance. Since no point of the solid is closer than its box, the sampled value is also
-    /// bounded by the distance from the box, up to its error: at the closest point of the grid, and
-    /// outside as well, because the distance from the box grows as fast there.
+    /// The third is for points outside of the grid. The sampled value there is at most that at the
+    /// closest point of the grid, so the first bound holds; [`Extrapolation::bounds`] accounts for
+    /// the decrease with the distance. Since no point of the solid is closer than its box, the
+    /// sampled value is also bounded by the distance from the box, up to its error: at the closest
+    /// point of the grid, and outside as well, because the distance from the box grows as fast
+    /// there.
     #[inline(always)]
     fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
@@ -281,7 +286,8 @@ impl DistanceField for Trilinear<'_> {
         self.penetrations_at((*points).into()).to_array()
     }
 
-    /// The gradients are those of the interpolated field, so forces along them derive from a potential.
+    /// The gradients are those of the interpolated field, so forces along them derive from a
+    /// potential.
     #[inline(always)]
     fn penetrations_and_gradients(
         &self,

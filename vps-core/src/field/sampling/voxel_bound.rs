@@ -9,8 +9,8 @@ use crate::field::extrapolation::Extrapolation;
 use crate::map::Voxelmap;
 use crate::simd::Vectors;
 
-/// An upper bound in a ball for a sampling that deviates by at most `max_deviation` voxels from the exact
-/// penetration, apart from the error of the values.
+/// An upper bound in a ball for a sampling that deviates by at most `max_deviation` voxels from the
+/// exact penetration, apart from the error of the values.
 pub(super) fn bound_by_voxel(
     map: &Voxelmap<'_>,
     center: Vec3,
@@ -27,8 +27,8 @@ pub(super) fn bound_by_voxel(
         accuracy.near_m
     };
     let deviation = max_deviation * grid.voxel_size();
-    // The exact penetration changes by at most the distance from the voxel's centre; outside of the grid
-    // it is no higher than at the closest point of the grid.
+    // The exact penetration changes by at most the distance from the voxel's centre; outside of the
+    // grid it is no higher than at the closest point of the grid.
     let exact = stored + error + clamped.distance(grid.center(voxel));
     // At the border the sum of eq. 5 contains four times the error of a value, and its neighbours may
     // differ by three diagonals.

@@ -36,8 +36,8 @@ pub enum StepError {
     /// The contacts' force, torque or stiffness is not finite.
     #[error("the contact wrench is not finite")]
     Contact,
-    /// The time step is not positive and finite, or so long that the tool would leave the range of 32-bit
-    /// numbers.
+    /// The time step is not positive and finite, or so long that the tool would leave the range of
+    /// 32-bit numbers.
     #[error("a step must take a positive and finite time, not {0} s")]
     TimeStep(f32),
 }

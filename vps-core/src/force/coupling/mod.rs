@@ -19,8 +19,8 @@ use crate::force::wrench::Wrench;
 /// what the tool touches, and the tool cannot be pushed through it (Colgate, Stanley and Brown 1995;
 /// for six degrees of freedom McNeely, Puterbaugh and Troy 1999).
 ///
-/// All poses are those of the tool's frame in the world; the device's pose is the one the user wants the
-/// tool to have. In each cycle, query the contacts at [`pose`](Self::pose) and call
+/// All poses are those of the tool's frame in the world; the device's pose is the one the user
+/// wants the tool to have. In each cycle, query the contacts at [`pose`](Self::pose) and call
 /// [`step`](Self::step):
 ///
 /// ```
@@ -44,18 +44,19 @@ use crate::force::wrench::Wrench;
 ///
 /// # Stability
 /// Springs, dampers and contacts are integrated implicitly, contacts by their [`LinearWrench`]
-/// (Otaduy and Lin 2006). The quadratic potential of the points in contact with a convex solid touches
-/// the true one at the tool, and is nowhere below it. While the device rests, contacts match their wrench
-/// and rotations within a step are small, a step adds no energy, for any mass, stiffness and time step.
-/// Contacts that are stiffer than stated along some axis are stable up to the sum of 4 m / dt² and twice
-/// the stated stiffness; so a bare [`Wrench`], which states none, is stable up to 4 m / dt² (a tool of
-/// 0.1 kg at 1 kHz: 400 kN/m). Beyond that, and with any wrench, speeds stay below `max_speed` and
-/// `max_angular_speed`, force and torque below `max_force` and `max_torque`. The gyroscopic torque,
-/// which does no work and is small at the speed of hands, is neglected.
+/// (Otaduy and Lin 2006). The quadratic potential of the points in contact with a convex solid
+/// touches the true one at the tool, and is nowhere below it. While the device rests, contacts
+/// match their wrench and rotations within a step are small, a step adds no energy, for any mass,
+/// stiffness and time step. Contacts that are stiffer than stated along some axis are stable up to
+/// the sum of 4 m / dt² and twice the stated stiffness; so a bare [`Wrench`], which states none, is
+/// stable up to 4 m / dt² (a tool of 0.1 kg at 1 kHz: 400 kN/m). Beyond that, and with any wrench,
+/// speeds stay below `max_speed` and `max_angular_speed`, force and torque below `max_force` and
+/// `max_torque`. The gyroscopic torque, which does no work and is small at the speed of hands, is
+/// neglected.
 ///
-/// A contact is detected once the tool has entered it, by up to the motion of a step. A single contact
-/// returns less energy than it took. Several that begin in different steps may together return slightly
-/// more (4 % in a random case of two), which the dampers dissipate.
+/// A contact is detected once the tool has entered it, by up to the motion of a step. A single
+/// contact returns less energy than it took. Several that begin in different steps may together
+/// return slightly more (4 % in a random case of two), which the dampers dissipate.
 ///
 /// Coordinates have 32 bits: at 0.1 m from the origin of the world their resolution is 7 nm, which a
 /// contact of 10⁷ N/m turns into 0.07 N.
@@ -65,9 +66,9 @@ use crate::force::wrench::Wrench;
 /// (Colgate and Schenkel 1997): a light tool needs little of the latter.
 ///
 /// # Steady state
-/// A device that is d metres deep in a solid of k N/m feels d / (1/`stiffness` + 1/k): the tool stays at
-/// the surface, apart from the force divided by k. The spring force is limited to `max_force`, and with
-/// it the force of the tool on the solid.
+/// A device that is d metres deep in a solid of k N/m feels d / (1/`stiffness` + 1/k): the tool
+/// stays at the surface, apart from the force divided by k. The spring force is limited to
+/// `max_force`, and with it the force of the tool on the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VirtualCoupling {
     tool: Tool,
@@ -140,17 +141,17 @@ impl VirtualCoupling {
         self.rendered
     }
 
-    /// Advances the tool by `dt` seconds. Returns the force in N and the torque in N m that the device
-    /// should exert on the user, in the world, the torque about the tool's centre. `contact` is the wrench
-    /// of the contacts on the tool at [`pose`](Self::pose), in the world and about its centre: a
-    /// [`LinearWrench`], or a [`Wrench`] if its derivative is unknown.
+    /// Advances the tool by `dt` seconds. Returns the force in N and the torque in N m that the
+    /// device should exert on the user, in the world, the torque about the tool's centre. `contact`
+    /// is the wrench of the contacts on the tool at [`pose`](Self::pose), in the world and about
+    /// its centre: a [`LinearWrench`], or a [`Wrench`] if its derivative is unknown.
     ///
     /// Solves six equations; allocates nothing.
     ///
     /// # Errors
-    /// If an argument is not finite. The state is unchanged then, and [`rendered`](Self::rendered) is still
-    /// the wrench of the last successful step. The motion of the device since then counts as that of the
-    /// next successful step.
+    /// If an argument is not finite. The state is unchanged then, and [`rendered`](Self::rendered)
+    /// is still the wrench of the last successful step. The motion of the device since then counts
+    /// as that of the next successful step.
     pub fn step(
         &mut self,
         device: Pose3,

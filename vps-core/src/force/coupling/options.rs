@@ -8,8 +8,8 @@ use crate::asset::MassProperties;
 
 /// The simulated body that a haptic device moves.
 ///
-/// Mass and inertia need not be those of a real tool: the lighter it is, the less its inertia is felt and
-/// the less damping it needs. A light tool is stable with contacts of any stiffness whose
+/// Mass and inertia need not be those of a real tool: the lighter it is, the less its inertia is
+/// felt and the less damping it needs. A light tool is stable with contacts of any stiffness whose
 /// [`LinearWrench`](crate::LinearWrench) is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tool {
@@ -44,8 +44,8 @@ pub struct CouplingOptions {
     pub angular_stiffness: f32,
     /// Of the damper between the orientations, in N m s/rad.
     pub angular_damping: f32,
-    /// Damping of contacts in seconds, relative to their stiffness: a contact of k N/m has this times k
-    /// N s/m.
+    /// Damping of contacts in seconds, relative to their stiffness: a contact of k N/m has this
+    /// times k N s/m.
     pub contact_damping: f32,
     /// The largest force in N that the device renders and the spring exerts.
     pub max_force: f32,

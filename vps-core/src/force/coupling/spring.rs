@@ -14,9 +14,9 @@ pub(super) struct Spring {
 }
 
 impl Spring {
-    /// From stiffness, damping and limit. A spring beyond its limit is replaced by the softer one that
-    /// exerts the limit: its quadratic potential touches the true one at the tool and is nowhere below it,
-    /// so that an implicit step cannot add energy.
+    /// From stiffness, damping and limit. A spring beyond its limit is replaced by the softer one
+    /// that exerts the limit: its quadratic potential touches the true one at the tool and is
+    /// nowhere below it, so that an implicit step cannot add energy.
     pub(super) fn new(
         (stiffness, damping, limit): (f32, f32, f32),
         offset: Vec3,
@@ -33,8 +33,8 @@ impl Spring {
         }
     }
 
-    /// The implicit drag coefficient of a step of `h` seconds in kg, and the impulse that does not depend on
-    /// the velocity at its end.
+    /// The implicit drag coefficient of a step of `h` seconds in kg, and the impulse that does not
+    /// depend on the velocity at its end.
     pub(super) fn implicit(&self, h: f64) -> (f64, DVec3) {
         let (stiffness, damping) = (h * self.stiffness, h * self.damping);
         let impulse = damping * self.device_velocity + stiffness * self.offset;

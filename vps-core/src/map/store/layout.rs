@@ -18,8 +18,8 @@ pub struct CellGroup {
     /// Bit i stands for the i-th of the cells; cells are counted x first, then y, then z.
     pub refined: u64,
     /// Bit i is set if neither cell i nor one of its seven next neighbours (along x, y, z and
-    /// diagonally) is refined. All eight voxels around a point of the cell are then interpolated in the
-    /// lattice.
+    /// diagonally) is refined. All eight voxels around a point of the cell are then interpolated in
+    /// the lattice.
     pub coarse_neighbourhood: u64,
     /// Rank: the number of refined cells before this group.
     pub before: u32,

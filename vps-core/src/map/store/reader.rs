@@ -48,7 +48,8 @@ impl<T: StoredValue> Reader<'_, T> {
                     return interpolated;
                 }
                 let mut rows = [[T::Pair::zeroed(); LANES]; 4];
-                // Positions between the values of each stencil, which may lie further apart than voxels.
+                // Positions between the values of each stencil, which may lie further apart than
+                // voxels.
                 let mut fractions = Points::from(t);
                 let mut per_voxel = [1.0; LANES];
                 let mut mixed: [Option<[f32; 8]>; LANES] = [None; LANES];
@@ -172,8 +173,9 @@ impl<T: StoredValue> Reader<'_, T> {
         self.mixed_stencil(index, cell, local, crosses)
     }
 
-    /// The stencil of voxels in several cells, or of stored and interpolated voxels of one cell. Assembled
-    /// cell by cell; voxel i of the eight is the next one along the axes of the bits of i.
+    /// The stencil of voxels in several cells, or of stored and interpolated voxels of one cell.
+    /// Assembled cell by cell; voxel i of the eight is the next one along the axes of the bits of
+    /// i.
     #[inline(always)]
     fn mixed_stencil(
         &self,

@@ -64,8 +64,8 @@ impl CandidateBuffer {
         }
     }
 
-    /// Adds the candidates to a collector. Those with the highest score before the weight of their normal
-    /// come first, so that few others can exceed the threshold.
+    /// Adds the candidates to a collector. Those with the highest score before the weight of their
+    /// normal come first, so that few others can exceed the threshold.
     #[inline(always)]
     pub(super) fn add_to<const N: usize>(
         &self,

@@ -47,7 +47,8 @@ impl<const N: usize> Collector for BestCandidate<'_, N> {
 }
 
 impl<const N: usize> BestCandidate<'_, N> {
-    /// Keeps a contact if its score is the highest so far; `score` is without the weight of its normal.
+    /// Keeps a contact if its score is the highest so far; `score` is without the weight of its
+    /// normal.
     pub(super) fn consider(&mut self, contact: Contact, score: f32) {
         let score = score * self.polygon.normal_weight(contact.normal);
         let is_better = match &self.found {

@@ -25,11 +25,12 @@ use crate::query::contact::Contact;
 /// ([`Query::with_motion`](crate::Query::with_motion)). Contacts with less than half the weight of the
 /// deepest one only fill up the manifold to four contacts, since the body may tip onto them next.
 ///
-/// More than four contacts are selected only where the field is curved, that is where the penetrations
-/// of contacts of sufficient weight differ from those in a half-space: four contacts support a body on a
-/// plane, but not in a thread. The weight also decreases with the angle between the normals of a contact
-/// and of the deepest one, down to a quarter: points close to an edge come before those on it, whose
-/// normals belong to neither side. Of contacts with equal scores the first is selected.
+/// More than four contacts are selected only where the field is curved, that is where the
+/// penetrations of contacts of sufficient weight differ from those in a half-space: four contacts
+/// support a body on a plane, but not in a thread. The weight also decreases with the angle between
+/// the normals of a contact and of the deepest one, down to a quarter: points close to an edge come
+/// before those on it, whose normals belong to neither side. Of contacts with equal scores the
+/// first is selected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],
@@ -47,9 +48,9 @@ impl<const N: usize> ContactManifold<N> {
         len: 0,
     };
 
-    /// Reduces `contacts`, found by a query with `margin` metres and a `motion`. The area is that of the
-    /// polygon of the selected points, seen `along` a unit vector in the shell frame: the direction in
-    /// which penetration grows at the deepest point. Costs `N` passes.
+    /// Reduces `contacts`, found by a query with `margin` metres and a `motion`. The area is that
+    /// of the polygon of the selected points, seen `along` a unit vector in the shell frame: the
+    /// direction in which penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
     pub fn spread(contacts: &[Contact], along: Vec3, margin: f32, motion: Option<f32>) -> Self {

@@ -118,8 +118,9 @@ impl<const N: usize> Polygon<N> {
         is_sufficient & depth_weights
     }
 
-    /// The gain of points: a length for a single corner, otherwise twice the area added outside of the
-    /// polygon. `slack` is added to the gain beyond an edge of the given length (1 for a single corner).
+    /// The gain of points: a length for a single corner, otherwise twice the area added outside of
+    /// the polygon. `slack` is added to the gain beyond an edge of the given length (1 for a single
+    /// corner).
     #[inline(always)]
     fn area_gains(&self, points: Vectors, slack: impl Fn(f32) -> f32x4) -> f32x4 {
         let from_first = points.minus(Vectors::splat(self.corners[0]));
@@ -167,8 +168,8 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Edge {
-    /// Twice the signed area of the triangles over the edge, positive outside of the polygon; for points
-    /// relative to the first corner.
+    /// Twice the signed area of the triangles over the edge, positive outside of the polygon; for
+    /// points relative to the first corner.
     #[inline(always)]
     fn gain(&self, from_first: Vectors) -> f32x4 {
         from_first.dot(Vectors::splat(self.outward)) - f32x4::splat(self.offset)

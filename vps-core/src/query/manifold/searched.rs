@@ -22,12 +22,12 @@ struct SearchedCandidates<'q, 't, F: ?Sized, W> {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// The manifold of the contact set, its area seen along the field's normal at the deepest point. It
-    /// equals that of [`ContactManifold::spread`], but not all contacts are visited.
+    /// The manifold of the contact set, its area seen along the field's normal at the deepest
+    /// point. It equals that of [`ContactManifold::spread`], but not all contacts are visited.
     ///
     /// One search finds the deepest contact and those of sufficient weight. If these are too few, a
-    /// second search finds those of low weight. Contacts of even lower weight, or that do not fit on the
-    /// stack, are searched for one by one as far as they could have a higher score.
+    /// second search finds those of low weight. Contacts of even lower weight, or that do not fit
+    /// on the stack, are searched for one by one as far as they could have a higher score.
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
         // Most bodies of a scene are apart: the buffer is not initialised for them.
         if !self.may_touch() {

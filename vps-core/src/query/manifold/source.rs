@@ -11,8 +11,8 @@ pub(super) trait CandidateSource<const N: usize> {
     /// The candidate with the highest score for a polygon.
     fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact>;
 
-    /// Whether the field is curved: a candidate of sufficient weight is off the plane through the deepest
-    /// one.
+    /// Whether the field is curved: a candidate of sufficient weight is off the plane through the
+    /// deepest one.
     fn is_curved(&self, polygon: &Polygon<N>) -> bool;
 }
 
