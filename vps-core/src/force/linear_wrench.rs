@@ -7,8 +7,8 @@ use wide::f32x4;
 
 use crate::field::DistanceField;
 use crate::force::wrench::{Weight, Wrench, WrenchSum};
+use crate::query::collectors::{Collector, Found};
 use crate::query::posed::Query;
-use crate::query::search::{Collector, Found};
 use crate::query::work::CountWork;
 use crate::simd::Vectors;
 

@@ -4,9 +4,9 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::field::DistanceField;
+use crate::query::collectors::{Collector, Found};
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
-use crate::query::search::{Collector, Found};
 use crate::query::work::CountWork;
 use crate::shell::PointSphereTree;
 use crate::simd::{Vectors, padded};

@@ -1,12 +1,12 @@
 //! Queries: a pointshell posed in a distance field.
 
 mod body_pair;
-mod collectors;
+pub(crate) mod collectors;
 pub(crate) mod contact;
 mod contacts;
 mod manifold;
 pub(crate) mod posed;
-pub(crate) mod search;
+mod search;
 mod segments;
 mod sweep;
 mod time_critical;

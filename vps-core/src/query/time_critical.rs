@@ -4,10 +4,10 @@ use glamx::Vec3;
 
 use crate::field::DistanceField;
 use crate::force::wrench::{Weight, Wrench, WrenchSum};
-use crate::query::collectors::DeepestContact;
+use crate::query::collectors::{Collector, DeepestContact, Found};
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
-use crate::query::search::{Collector, Found, ROOT};
+use crate::query::search::ROOT;
 use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 

@@ -33,8 +33,8 @@ impl Spring {
         }
     }
 
-    /// The implicit drag coefficient of a step of `h` seconds in kg, and the impulse that does not
-    /// depend on the velocity at its end.
+    /// The implicit drag coefficient of a step of `h` seconds in kg or kg m², and the impulse that
+    /// does not depend on the velocity at its end.
     pub(super) fn implicit(&self, h: f64) -> (f64, DVec3) {
         let (stiffness, damping) = (h * self.stiffness, h * self.damping);
         let impulse = damping * self.device_velocity + stiffness * self.offset;

@@ -4,9 +4,8 @@ use wide::f32x4;
 
 use super::collectors::BestCandidate;
 use super::weighting::{DepthWeighting, MIN_FILL_WEIGHT, MIN_WEIGHT};
-use crate::query::collectors::DeepestContact;
+use crate::query::collectors::{Collector, DeepestContact, Found};
 use crate::query::contact::Contact;
-use crate::query::search::{Collector, Found};
 use crate::shell::PointSphereTree;
 use crate::simd::{LANES, Points, Vectors, lanes_in};
 

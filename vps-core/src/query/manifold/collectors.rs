@@ -4,8 +4,8 @@ use wide::f32x4;
 
 use super::polygon::Polygon;
 use crate::field::Discs;
+use crate::query::collectors::{Collector, Found};
 use crate::query::contact::Contact;
-use crate::query::search::{Collector, Found};
 use crate::simd::lanes_in;
 
 /// Keeps the candidate with the highest score for a polygon.
