@@ -1,6 +1,8 @@
+//! Axis-aligned boxes.
+
 use glamx::{Mat3, Pose3, Vec3};
 
-/// An axis-aligned box, its corners in metres in the frame of whatever it bounds.
+/// An axis-aligned box, its corners in metres in the frame of the bounded object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// The corner with the smallest coordinates.
@@ -37,10 +39,10 @@ impl Aabb {
     }
 
     /// Whether a body may lie within this box, given the smallest box around it in its own frame;
-    /// `to_this` takes coordinates of that frame to those of this box.
+    /// `to_this` transforms coordinates of that frame to those of this box.
     ///
-    /// Never false for one that does: it reaches all six sides of its box, and so at least as far along
-    /// any direction as the whole of the side that reaches furthest.
+    /// Never false for a body that does lie within: it touches all six faces of its box, so along any
+    /// direction it extends at least as far as the nearest corner of the furthest face.
     pub fn may_hold(&self, body: &Self, to_this: &Pose3) -> bool {
         let half = body.extents() * 0.5;
         let center = to_this.transform_point(body.center());
@@ -78,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_in_a_box_may() {
+    fn bodies_within_a_box_are_never_refused() {
         let bounds = Aabb {
             min: Vec3::new(-1.0, -2.0, -0.5),
             max: Vec3::new(1.0, 1.0, 0.5),

@@ -1,11 +1,11 @@
 //! Voxelmap-Pointshell collision detection for arbitrarily complex meshes.
 //!
 //! One body is a [`Voxelmap`], a signed distance field on a regular grid; the other is a
-//! pointshell, a cloud of surface points with inward normals, ordered in a
-//! [`PointSphereTree`]. A [`Query`] puts the two in a relative pose and finds the points that lie
-//! inside the field: contacts with their penetration, a penalty force and torque, and a
-//! [`ContactManifold`] for a physics engine. The method is that of Sagardia, Stouraitis and
-//! Lopes e Silva (2014); sections and equations in this documentation are those of their paper.
+//! pointshell, a cloud of surface points with inward normals in a [`PointSphereTree`]. A [`Query`]
+//! places the two in a relative pose and finds the points inside of the field: contacts with their
+//! penetration, a penalty force and torque, and a [`ContactManifold`] for a physics engine. The
+//! method is that of Sagardia, Stouraitis and Lopes e Silva (2014); sections and equations in this
+//! documentation are those of their paper.
 //!
 //! ```
 //! use vps_core::{Cuboid, Pose3, Query, Vec3};
@@ -26,39 +26,40 @@
 //! assert!((deepest.penetration - 0.01).abs() < 1e-6);
 //! ```
 //!
-//! # What to ask
-//! | you want | ask | costs |
+//! # Queries
+//! | question | call | cost |
 //! |---|---|---|
-//! | does it touch? | [`Query::touches`] | little: ends at the first contact |
+//! | do the bodies touch? | [`Query::touches`] | low: stops at the first contact |
 //! | the deepest contact δ | [`Query::deepest`] | branch and bound |
-//! | how far apart, and where | [`Query::closest`] | branch and bound |
-//! | a few contacts for an engine | [`Query::manifold`] | about that of the deepest |
+//! | separation and closest point | [`Query::closest`] | branch and bound |
+//! | a few contacts for a physics engine | [`Query::manifold`] | about that of the deepest |
 //! | one contact a segment (section 2.4) | [`Query::for_each_segment`] | branch and bound in each |
-//! | force and torque (eqs. 2, 3) | [`Query::wrench`] | as many contacts as there are |
-//! | those along the field's gradient, and how they change with the pose | [`Query::linear_wrench`] | a little more |
-//! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | as many as there are |
-//! | as much as there is time for | [`Query::time_critical`] | what you allow |
-//! | the same sooner, from one step to the next | [`Query::with_hint`] | a little less |
-//! | a fast body not to be missed | [`Sweep::first_contact`] | some touches |
-//! | two bodies, either way or both | [`BodyPair`] | one or two queries |
+//! | force and torque (eqs. 2, 3) | [`Query::wrench`] | proportional to the contacts |
+//! | the same along the field's gradient, with the derivative by the pose | [`Query::linear_wrench`] | slightly more |
+//! | all contacts (Algorithm 1) | [`Query::for_each_contact`] | proportional to the contacts |
+//! | an estimate in limited time | [`Query::time_critical`] | as allowed |
+//! | warm start from the previous step | [`Query::with_hint`] | slightly less |
+//! | the first contact of a fast body | [`Sweep::first_contact`] | several touch tests |
+//! | two bodies, with the shell of either or both | [`BodyPair`] | one or two queries |
 //!
-//! [`VirtualCoupling`] makes force and torque for a haptic device of it.
+//! [`VirtualCoupling`] turns contacts into force and torque for a haptic device.
 //!
 //! # Conventions
 //! * **Sign**: penetration is positive inside a solid and negative outside;
 //!   [`DistanceField::signed_distance`] is its negative.
 //! * **Normals** of shells and gradients of fields point inwards, to deeper penetration.
 //! * **Frames**: `shell` is the frame of the pointshell, `field` that of the distance field. A
-//!   pose takes shell coordinates to field coordinates. Both are those of their assets: the
+//!   pose transforms shell coordinates to field coordinates. Both are those of their assets: the
 //!   coordinates of the mesh less [`Asset::origin`], which is zero unless the mesh lies far away.
 //! * **Units** are SI: metres, newtons per metre of stiffness one, newton metres.
 //!
 //! # Features
-//! `std` (default) takes mathematics from the standard library, `libm` from the `libm` crate: one
-//! of the two must be on. `alloc` adds structures that own their data. A query never allocates.
+//! `std` (default) uses mathematics of the standard library, `libm` that of the `libm` crate; one
+//! of the two must be enabled. `alloc` adds structures that own their data. A query never
+//! allocates.
 //!
-//! With `std` on x86-64, queries use AVX2 and its bit counting where the processor has them, with
-//! the same results to the bit; without `std` they use what the crate is compiled for
+//! With `std` on x86-64, queries use AVX2 and bit manipulation instructions where the processor has
+//! them, with the same results to the bit; without `std` they use the instruction set of the target
 //! (`-C target-cpu`).
 
 #![no_std]
@@ -75,64 +76,37 @@ struct Readme;
 
 mod aabb;
 mod asset;
-mod body_pair;
-pub mod conformance;
-mod coupling;
-mod dispatch;
 mod field;
-pub mod format;
-mod function;
-mod grid;
-mod include;
-mod lanes;
-mod linear_wrench;
-mod manifold;
-mod outside;
+mod force;
+mod map;
 mod query;
-mod sampling;
-#[cfg(feature = "alloc")]
-mod scale;
-mod search;
-mod segments;
-mod shapes;
+mod shell;
+mod simd;
 mod storage;
-pub mod store;
-#[cfg(feature = "alloc")]
-mod surface_mesh;
-mod sweep;
-mod time_critical;
-mod tree;
-mod voxelmap;
-mod work;
-mod wrench;
 
 pub use aabb::Aabb;
-pub use asset::{Asset, MassProperties};
-pub use body_pair::{Body, BodyPair, PairContact, Shells, Side};
-pub use coupling::{CouplingError, CouplingOptions, StepError, Tool, VirtualCoupling};
-pub use field::DistanceField;
 #[cfg(feature = "alloc")]
-pub use format::encode;
-pub use format::{FormatError, VPS_VERSION};
-pub use function::FieldFn;
+pub use asset::ScaleError;
+#[cfg(feature = "alloc")]
+pub use asset::format::encode;
+pub use asset::format::{self, FormatError, VPS_VERSION};
+pub use asset::{Aligned, Asset, MassProperties};
+pub use field::{
+    Ball, Capsule, Cuboid, Cylinder, Discs, DistanceField, FieldFn, HalfSpace, Linear,
+    LocalPenetration, Trilinear, conformance,
+};
+pub use force::{
+    CouplingError, CouplingOptions, LinearWrench, StepError, Tool, VirtualCoupling, Weight, Wrench,
+};
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
-pub use grid::{Grid, GridError};
-pub use include::Aligned;
-pub use lanes::{Discs, LANES, Points};
-pub use linear_wrench::LinearWrench;
-pub use manifold::ContactManifold;
-pub use query::{Contact, Query};
-pub use sampling::{Linear, LocalPenetration, Trilinear};
 #[cfg(feature = "alloc")]
-pub use scale::ScaleError;
-pub use shapes::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
+pub use map::SurfaceMesh;
+pub use map::store::{self, Store, Values};
+pub use map::{Accuracy, BEND_STEPS, Grid, GridError, UNKNOWN_BEND, Voxelmap, VoxelmapError};
+pub use query::{
+    Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact, Query,
+    Shells, Side, Sweep, Work,
+};
+pub use shell::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
+pub use simd::{LANES, Points};
 pub use storage::Storage;
-pub use store::{Store, Values};
-#[cfg(feature = "alloc")]
-pub use surface_mesh::SurfaceMesh;
-pub use sweep::{Impact, Sweep};
-pub use time_critical::Estimate;
-pub use tree::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
-pub use voxelmap::{Accuracy, BEND_STEPS, UNKNOWN_BEND, Voxelmap, VoxelmapError};
-pub use work::{CountWork, Work};
-pub use wrench::{Weight, Wrench};

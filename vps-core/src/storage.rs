@@ -1,11 +1,13 @@
+//! Borrowed or owned data, so that one type serves flash memory and heaps.
+
 use core::ops::Deref;
 
 /// A slice that is borrowed (from a file in memory, from flash) or, with `alloc`, owned.
 #[derive(Clone, Debug)]
 pub enum Storage<'a, T> {
-    /// Data that lives elsewhere.
+    /// Borrowed data.
     Borrowed(&'a [T]),
-    /// Data of its own.
+    /// Owned data.
     #[cfg(feature = "alloc")]
     Owned(alloc::vec::Vec<T>),
 }

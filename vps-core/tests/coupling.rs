@@ -1,4 +1,4 @@
-//! The virtual coupling against what springs, walls and energy demand.
+//! The virtual coupling: equilibria with springs and walls, energy, and invalid input.
 
 use proptest::prelude::*;
 use vps_core::{
@@ -22,7 +22,7 @@ fn magnitude(low: f32, high: f32) -> impl Strategy<Value = f32> {
     (low..high).prop_map(|exponent| 10.0_f32.powf(exponent))
 }
 
-/// A box of some centimetres, its centre of mass anywhere in it, and a mass of 1 g to 0.3 kg.
+/// A box of some centimetres with its centre of mass anywhere within, and a mass of 1 g to 0.3 kg.
 fn tool() -> impl Strategy<Value = Tool> {
     let edges = prop::array::uniform3(0.02..0.1_f32);
     (edges, vector(0.01), vector(1.0), magnitude(-3.0, -0.5)).prop_map(
@@ -45,7 +45,7 @@ fn coupling(tool: Tool) -> VirtualCoupling {
     VirtualCoupling::new(tool, options, Pose3::identity()).unwrap()
 }
 
-/// The world is solid below y = 0. The tool has points, and `stiffness` N/m is each one's.
+/// The world is solid below y = 0. Each point of the tool has `stiffness` N/m.
 #[derive(Clone, Debug)]
 struct Wall {
     points: Vec<Vec3>,
@@ -53,7 +53,7 @@ struct Wall {
 }
 
 impl Wall {
-    /// What the wall does to the tool, in the world.
+    /// The wrench of the wall on the tool, in the world.
     fn contact(&self, coupling: &VirtualCoupling) -> LinearWrench {
         let pose = coupling.pose();
         let center = pose.transform_point(coupling.tool().center);
@@ -93,7 +93,7 @@ fn placed(coupling: &VirtualCoupling, pose: Pose3) -> VirtualCoupling {
     VirtualCoupling::new(*coupling.tool(), *coupling.options(), pose).unwrap()
 }
 
-/// Kinetic energy, and that of the springs, which give no more than their limit.
+/// Kinetic energy plus that of the springs, whose forces are limited.
 fn energy(coupling: &VirtualCoupling) -> f32 {
     let (tool, options) = (coupling.tool(), coupling.options());
     let (pose, device) = (coupling.pose(), coupling.device());
@@ -125,7 +125,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn in_free_space_the_tool_follows_and_nothing_is_felt(
+    fn in_free_space_the_tool_follows_without_force(
         tool in tool(), device in pose(0.1, 1.0),
     ) {
         let mut coupling = coupling(tool);
@@ -139,9 +139,9 @@ proptest! {
         prop_assert!(felt.force.length() < 1e-2 && felt.torque.length() < 1e-3, "{felt:?}");
     }
 
-    /// Two springs in a row.
+    /// Two springs in series.
     #[test]
-    fn a_wall_is_felt_as_deep_as_the_device_is_in_it(
+    fn a_wall_exerts_a_force_proportional_to_the_depth_of_the_device(
         tool in tool(), depth in 1e-4..8e-3_f32, stiffness in magnitude(2.0, 9.0),
         aside in vector(0.1),
     ) {
@@ -163,12 +163,12 @@ proptest! {
         prop_assert!((tool_depth - force / stiffness).abs() < 0.01 * tool_depth.abs() + 1e-7);
     }
 
-    /// A tool that has come to rest passes on what the contacts do to it.
+    /// A tool at rest passes the wrench of the contacts on to the device.
     #[test]
-    fn at_rest_the_device_exerts_what_the_contacts_do(
+    fn at_rest_the_device_renders_the_wrench_of_the_contacts(
         tool in tool(), mut wall in wall(), device in pose(0.02, 0.3),
     ) {
-        // Steps of a 32-bit coordinate times a stiffness are newtons beyond this.
+        // Beyond this, the resolution of a 32-bit coordinate times the stiffness is in newtons.
         wall.stiffness = wall.stiffness.min(1e6);
         let start = Pose3::from_translation(Vec3::new(0.0, 0.15, 0.0));
         let mut coupling = placed(&coupling(tool), start);
@@ -188,7 +188,7 @@ proptest! {
     ) {
         let up = Pose3::from_translation(Vec3::new(0.0, 0.35, 0.0));
         let mut coupling = placed(&coupling(tool), up * from);
-        // The device is put there, then stays.
+        // The device is placed there and stays.
         coupling.step(device, Wrench::default(), DT).unwrap();
         let start = energy(&coupling);
         let mut least_free = start;
@@ -198,8 +198,8 @@ proptest! {
             let before = energy(&coupling);
             coupling.step(device, contact, DT).unwrap();
             let after = energy(&coupling);
-            // Contacts are known once the tool is in them. One gives back less than it took; one of
-            // several, which did not begin together, may give back a little of another's.
+            // Contacts are detected once the tool has entered them. A single one returns less energy
+            // than it took; one of several that began in different steps may return some of another's.
             let most = if wall.points.len() == 1 { 1.001 * least_free } else { 1.25 * start };
             prop_assert!(after <= most + 1e-3 * start + 1e-5, "{after} of {most}");
             if is_free {
@@ -210,7 +210,7 @@ proptest! {
     }
 
     #[test]
-    fn jumps_do_not_blow_up(
+    fn jumps_of_the_device_stay_stable(
         tool in tool(), wall in wall(),
         jumps in prop::collection::vec(pose(1.0, 3.0), 1..20),
     ) {
@@ -229,9 +229,10 @@ proptest! {
         }
     }
 
-    /// Whatever the numbers are, a step is made and all is finite, or none is and all stays.
+    /// For any numbers, a step succeeds and the state is finite, or it fails and the state is
+    /// unchanged.
     #[test]
-    fn any_numbers_are_survived(
+    fn any_numbers_leave_a_finite_state(
         tool in tool(),
         steps in prop::collection::vec(
             (prop::array::uniform7(any::<f32>()), prop::array::uniform32(any::<f32>()), any::<f32>()),
@@ -262,29 +263,29 @@ proptest! {
         }
     }
 
-    /// The same in a world that is seen from elsewhere.
+    /// The same in another world frame.
     #[test]
-    fn a_common_motion_changes_nothing(
+    fn a_change_of_frame_changes_nothing(
         tool in tool(), wall in wall(), device in pose(0.02, 0.3), motion in pose(0.2, 3.0),
     ) {
         let start = Pose3::from_translation(Vec3::new(0.0, 0.1, 0.0));
         let mut here = placed(&coupling(tool), start);
         let mut there = placed(&here, motion * start);
         for _ in 0..300 {
-            // Contacts that begin a step later make a difference, so both have the same.
+            // Both get the same contacts, since one that begins a step later makes a difference.
             let contact = wall.contact(&here);
             let felt = here.step(device, contact, DT).unwrap();
             let contact = contact.rotated(motion.rotation);
             let felt_there = there.step(motion * device, contact, DT).unwrap();
             let force = motion.rotation * felt.force;
             let torque = motion.rotation * felt.torque;
-            // Of 10 N and 0.5 N m at most; coordinates are rounded elsewhere.
+            // Of at most 10 N and 0.5 N m; coordinates are rounded differently.
             prop_assert!(is_close(felt_there.force, force, 0.1), "{} {force}", felt_there.force);
             prop_assert!(is_close(felt_there.torque, torque, 5e-3), "{} {torque}", felt_there.torque);
         }
     }
 
-    /// What is said of stiffness that is not predicted, or only in part.
+    /// The stability limit for stiffness that is predicted in part or not at all.
     #[test]
     fn contacts_may_be_stiffer_than_predicted(
         mass in magnitude(-3.0, 0.0), predicted in 0.0..3.0_f32, share in 0.1..0.95_f32,
@@ -296,7 +297,7 @@ proptest! {
         let limit = 4.0 * mass / (DT * DT);
         let predicted = predicted * limit;
         let stiffness = share * (limit + 2.0 * predicted);
-        // A contact that pulls as well, so that it never ends.
+        // A bilateral contact, so that it never ends.
         let mut coupling = VirtualCoupling::new(tool, options, Pose3::from_translation(1e-3 * Vec3::Y)).unwrap();
         for _ in 0..5000 {
             let mut contact = LinearWrench::ZERO;
@@ -310,7 +311,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_not_finite_is_refused() {
+fn arguments_that_are_not_finite_are_refused() {
     let tool = Tool {
         mass: 0.01,
         inertia: Mat3::from_diagonal(Vec3::splat(1e-6)),
@@ -342,7 +343,7 @@ fn what_is_not_finite_is_refused() {
 }
 
 #[test]
-fn wrong_numbers_are_named() {
+fn invalid_parameters_are_named() {
     let tool = Tool {
         mass: 0.01,
         inertia: Mat3::from_diagonal(Vec3::splat(1e-6)),
@@ -380,7 +381,7 @@ fn wrong_numbers_are_named() {
     assert_eq!(error, CouplingError::Pose);
 }
 
-/// A tree of one cluster, each point standing for 1 mm².
+/// A tree of one cluster; each point represents 1 mm².
 fn tree_of(points: &[Vec3], normals: &[Vec3]) -> PointSphereTree<'static> {
     let radius = points.iter().map(|p| p.length()).fold(1e-3, f32::max);
     let cluster = Cluster {
@@ -418,7 +419,7 @@ fn underside(mut tilt: impl FnMut(Vec3) -> Vec3) -> PointSphereTree<'static> {
     tree_of(&points, &normals.collect::<Vec<_>>())
 }
 
-/// The normals of a box: those of the rims point half way to the sides.
+/// The normals of a box: those of the rims point halfway to the sides.
 fn box_normals(point: Vec3) -> Vec3 {
     let rim = |c: f32| {
         if c.abs() > HALF_WIDTH - 1e-4 {
@@ -430,8 +431,8 @@ fn box_normals(point: Vec3) -> Vec3 {
     Vec3::new(rim(point.x), 0.0, rim(point.z))
 }
 
-/// What the device feels of a tool on level ground of so many N/m³, on average over 20 cycles: pressed
-/// on by 1 N first, then moved along at 0.1 m/s.
+/// The force that the device renders for a tool on level ground of a given stiffness in N/m³, on
+/// average over 20 cycles: first pressed on with 1 N, then moved along at 0.1 m/s.
 fn felt_in_sliding(
     tree: &PointSphereTree<'_>,
     ground: &impl DistanceField,
@@ -467,7 +468,7 @@ fn a_box_slides_freely_on_level_ground() {
     let ground = Cuboid::new(Vec3::new(1.0, 0.1, 1.0));
     for stiffness in [1e6, 1e8, 1e10] {
         let felt = felt_in_sliding(&underside(box_normals), &ground, 0.1, stiffness);
-        // Where the device is 1 mm deep, and the tool in a ground of finite stiffness.
+        // The device is 1 mm deep, and the tool in a ground of finite stiffness.
         let expected = 1.0 / (1.0 + 1000.0 / (stiffness * 1681e-6));
         assert!((felt.y - expected).abs() < 0.02, "{stiffness}: {felt}");
         assert!(felt.with_y(0.0).length() < 1e-3, "{stiffness}: {felt}");
@@ -478,7 +479,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(10))]
 
     #[test]
-    fn whatever_its_normals_are_a_tool_slides_freely(
+    fn a_tool_slides_freely_with_any_normals(
         tilts in prop::collection::vec(vector(2.0), 1..50), stiffness in magnitude(6.0, 10.0),
         is_a_function in any::<bool>(),
     ) {
@@ -496,9 +497,8 @@ proptest! {
     }
 }
 
-/// Contacts of random points and normals with a solid: the quadratic potential of their wrench is
-/// nowhere below the true one, which they share with it where the tool is. So an implicit step adds no
-/// energy.
+/// Contacts of random points and normals with a solid: the quadratic potential of their wrench touches
+/// the true one at the tool and is nowhere below it. So an implicit step adds no energy.
 fn check_potential(
     solid: &impl DistanceField,
     pose: Pose3,
@@ -526,7 +526,7 @@ fn check_potential(
         if before > 0.0 {
             let after = at(center + turned * arm + way);
             expected += 0.5 * (after * after - before * before);
-            // A turn is no displacement along a line, by its square.
+            // A rotation differs from a linear displacement by its square.
             let off = 0.5 * turn.length_squared() * arm.length();
             let deepest = before + way.length() + turn.length() * arm.length();
             tolerance += deepest * (off + 1e-6) + off * off;

@@ -1,15 +1,15 @@
-//! Whole queries on an asset in constant memory. Exits with 0 if their results are right, otherwise
-//! with the number of what is wrong.
+//! Queries on an asset in constant memory. Exits with 0 if all results are right, otherwise with the
+//! number of the failed check.
 
 #![no_std]
 #![no_main]
 
 use vps_core::{
-    Asset, Body, BodyPair, CouplingOptions, Cuboid, DistanceField, Pose3, Query, Shells, Sweep, Tool,
-    Vec3, VirtualCoupling, Weight, Work,
+    Asset, Body, BodyPair, CouplingOptions, Cuboid, DistanceField, Pose3, Query, Shells, Sweep,
+    Tool, Vec3, VirtualCoupling, Weight, Work,
 };
 
-// Only for its start-up code, which calls `main`.
+// For its start-up code alone, which calls `main`.
 #[link(name = "c")]
 unsafe extern "C" {}
 
@@ -18,10 +18,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// A torus around the z axis, about a metre wide: written by an example of the builder.
+/// A torus around the z axis, about a metre wide, written by an example of the builder.
 static TORUS: &[u8] = vps_core::include_asset!("../../../target/torus.vps");
 
-/// The first thing that is wrong.
+/// Runs all checks; the error is the number of the first one that fails.
 fn check() -> Result<(), i32> {
     let is = |right: bool, number: i32| if right { Ok(()) } else { Err(number) };
     let torus = Asset::from_bytes(TORUS).map_err(|_| 1)?;
@@ -36,34 +36,54 @@ fn check() -> Result<(), i32> {
     let deepest = query.deepest().ok_or(2)?;
     is((deepest.penetration - 0.01).abs() < 0.002, 3)?;
     let wrench = query.wrench(torus.mass.center(), Weight::Area);
-    is(wrench.force.z > 0.0 && wrench.force.truncate().length() < 0.2 * wrench.force.z, 4)?;
+    is(
+        wrench.force.z > 0.0 && wrench.force.truncate().length() < 0.2 * wrench.force.z,
+        4,
+    )?;
     let manifold = query.with_margin(0.01).manifold::<4>();
-    is(manifold.contacts().len() == 4 && manifold.contacts()[0] == deepest, 5)?;
+    is(
+        manifold.contacts().len() == 4 && manifold.contacts()[0] == deepest,
+        5,
+    )?;
     let work = Work::default();
     let mut segments = 0;
-    query.counting(&work).for_each_segment(3, |_, _| segments += 1);
+    query
+        .counting(&work)
+        .for_each_segment(3, |_, _| segments += 1);
     is(segments > 1 && work.points() > 0, 6)?;
 
-    // As much as 40 points tell, and all.
+    // Time-critical: stopped after 40 points, and complete.
     let some = query.time_critical(Vec3::ZERO, |tested| tested < 40);
     let all = query.time_critical(Vec3::ZERO, |_| true);
-    is(!some.is_complete && some.penetration_bound >= deepest.penetration, 7)?;
+    is(
+        !some.is_complete && some.penetration_bound >= deepest.penetration,
+        7,
+    )?;
     is(all.is_complete && all.deepest == Some(deepest), 8)?;
 
-    // Above the ground, and falling on it.
+    // Above the ground, and falling onto it.
     let above = Pose3::from_translation(Vec3::new(0.0, 0.0, height + 0.51));
     let closest = Query::new(&torus.tree, &ground, above).closest().ok_or(9)?;
     is((closest.penetration + 0.5).abs() < 0.002, 10)?;
     let below = Pose3::from_translation(Vec3::new(0.0, 0.0, -3.0));
     let fall = Sweep::new(&torus.tree, &ground, above, below);
     let impact = fall.first_contact(1e-3).ok_or(11)?;
-    is((impact.shell_to_field.translation.z - height - 0.01).abs() < 0.005, 12)?;
+    is(
+        (impact.shell_to_field.translation.z - height - 0.01).abs() < 0.005,
+        12,
+    )?;
 
-    // One torus in another.
+    // Two tori that intersect.
     let turned = Pose3::from_translation(Vec3::new(0.4, 0.0, 0.05));
     let pair = BodyPair::new(Body::of_asset(&torus), Body::of_asset(&torus), turned);
     is(pair.with_shells(Shells::Both).touches(), 13)?;
-    is(pair.wrench_on_first(Vec3::ZERO, Weight::Point).force.length() > 0.0, 14)?;
+    is(
+        pair.wrench_on_first(Vec3::ZERO, Weight::Point)
+            .force
+            .length()
+            > 0.0,
+        14,
+    )?;
     is(field.signed_distance(Vec3::ZERO) > 0.0, 15)?;
 
     // Pushed into the ground by a device, 5 mm deep.
@@ -80,7 +100,7 @@ fn check() -> Result<(), i32> {
     is((coupling.rendered().force.z - 5.0).abs() < 0.2, 18)
 }
 
-/// What the C start-up code calls.
+/// Entry point of the C start-up code.
 #[unsafe(no_mangle)]
 pub extern "C" fn main(_argc: i32, _argv: *const *const u8) -> i32 {
     check().err().unwrap_or(0)

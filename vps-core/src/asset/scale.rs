@@ -1,0 +1,113 @@
+//! Uniformly scaled copies of an asset.
+
+use alloc::vec::Vec;
+
+use super::Asset;
+use super::mass::MassProperties;
+use crate::aabb::Aabb;
+use crate::map::{Accuracy, Grid, GridError, Voxelmap, VoxelmapError};
+use crate::shell::{Cluster, PointSphereTree, TreeError};
+
+/// Why an asset cannot be scaled.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ScaleError {
+    /// The factor is not positive and finite.
+    #[error("the scale must be positive and finite, not {0}")]
+    Factor(f32),
+    /// The voxel size would exceed the range of 32-bit numbers.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The values would.
+    #[error(transparent)]
+    Voxelmap(#[from] VoxelmapError),
+    /// The points would.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+}
+
+impl Asset<'_> {
+    /// The solid scaled uniformly about the origin of the mesh. Copies all data. A solid scaled
+    /// along a single axis has other distances, and must be built from its mesh.
+    ///
+    /// # Errors
+    /// When the factor is not positive, or leads out of the range of 32-bit numbers.
+    pub fn scaled(&self, factor: f32) -> Result<Asset<'static>, ScaleError> {
+        if !(factor > 0.0 && factor.is_finite()) {
+            return Err(ScaleError::Factor(factor));
+        }
+        Ok(Asset {
+            origin: self.origin.map(|c| c * f64::from(factor)),
+            voxelmap: scaled_map(&self.voxelmap, factor)?,
+            tree: scaled_tree(&self.tree, factor)?,
+            mass: scaled_mass(&self.mass, factor),
+        })
+    }
+}
+
+fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, ScaleError> {
+    let grid = map.grid();
+    let grid = Grid::new(
+        grid.origin() * factor,
+        grid.voxel_size() * factor,
+        grid.dims(),
+    )?;
+    let solid = map.solid();
+    let Accuracy {
+        near_m,
+        far_m,
+        band_m,
+    } = map.accuracy();
+    // Every coordinate is rounded once more.
+    let rounding = f32::EPSILON * (solid.min.abs().max(solid.max.abs())).length();
+    let accuracy = Accuracy {
+        near_m: (near_m + rounding) * factor,
+        far_m: (far_m + rounding) * factor,
+        band_m: band_m * factor,
+    };
+    let solid = Aabb {
+        min: solid.min * factor,
+        max: solid.max * factor,
+    };
+    let store = map.store().clone().into_owned();
+    let bends = map.bends().to_vec().into();
+    let sigma = map.sigma() * factor;
+    Ok(Voxelmap::new(grid, sigma, solid, accuracy, store, bends)?)
+}
+
+fn scaled_tree(
+    tree: &PointSphereTree<'_>,
+    factor: f32,
+) -> Result<PointSphereTree<'static>, ScaleError> {
+    let times = |v: &[f32; 3]| v.map(|c| c * factor);
+    // Rounding may move a point out of its ball and away from its paraboloid by this.
+    let slack = 8.0 * f32::EPSILON * tree.reach();
+    let cluster = |c: &Cluster| Cluster {
+        center: times(&c.center),
+        radius: (c.radius + slack) * factor,
+        normal: c.normal,
+        thickness: (c.thickness + slack) * factor,
+        lift: c.lift * factor,
+        bulge: c.bulge / factor,
+        area: c.area * factor * factor,
+        ..*c
+    };
+    let points: Vec<_> = tree.points().iter().map(times).collect();
+    let areas: Vec<_> = tree.areas().iter().map(|a| a * factor * factor).collect();
+    let clusters: Vec<_> = tree.clusters().iter().map(cluster).collect();
+    Ok(PointSphereTree::new(
+        points.into(),
+        tree.normals().to_vec().into(),
+        areas.into(),
+        clusters.into(),
+        tree.level_starts().to_vec().into(),
+    )?)
+}
+
+fn scaled_mass(mass: &MassProperties, factor: f32) -> MassProperties {
+    let volume = factor * factor * factor;
+    MassProperties {
+        volume: mass.volume * volume,
+        center_of_mass: mass.center_of_mass.map(|c| c * factor),
+        inertia: mass.inertia.map(|i| i * volume * factor * factor),
+    }
+}

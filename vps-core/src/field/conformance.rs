@@ -1,0 +1,175 @@
+//! The conformance suite of [`DistanceField`], for the tests of implementations.
+
+use glamx::Vec3;
+
+use crate::aabb::Aabb;
+use crate::field::discs::Discs;
+use crate::field::distance_field::DistanceField;
+use crate::simd::{LANES, Points};
+
+/// A violated requirement of [`DistanceField`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Violation {
+    /// The bound of a ball or disc is below the penetration of a point in it.
+    #[error(
+        "the {piece} around {center} of radius {radius} m has bound {bound} m, but {point} in it has {penetration} m"
+    )]
+    Bound {
+        /// Ball or disc.
+        piece: &'static str,
+        /// Its centre.
+        center: Vec3,
+        /// Its radius in metres.
+        radius: f32,
+        /// The bound.
+        bound: f32,
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        penetration: f32,
+    },
+    /// A disc has a higher bound than the ball around it.
+    #[error("the disc around {center} has bound {disc} m, the ball {ball} m")]
+    Disc {
+        /// Its centre.
+        center: Vec3,
+        /// Its bound.
+        disc: f32,
+        /// The bound of the ball.
+        ball: f32,
+    },
+    /// The penetration of a point differs between the scalar and the SIMD method.
+    #[error("{point} has penetration {alone} m alone, but {together} m with others")]
+    Lanes {
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        alone: f32,
+        /// Its penetration as one of several points.
+        together: f32,
+    },
+    /// A point of the solid lies outside of the bounds.
+    #[error("{point} is {penetration} m inside, but out of bounds {bounds:?}")]
+    Bounds {
+        /// The point.
+        point: Vec3,
+        /// Its penetration.
+        penetration: f32,
+        /// The bounds.
+        bounds: Aabb,
+    },
+    /// A gradient is not finite.
+    #[error("the gradient at {point} is {gradient}")]
+    Gradient {
+        /// The point.
+        point: Vec3,
+        /// The gradient.
+        gradient: Vec3,
+    },
+    /// The inward direction is not of length one (or zero).
+    #[error("the inward direction at {point} has length {length}")]
+    Direction {
+        /// The point.
+        point: Vec3,
+        /// Length of the direction.
+        length: f32,
+    },
+}
+
+/// Checks the requirements for a ball, discs, and a point in all of them. `inside` lies in the unit
+/// ball and is scaled to the ball around `center`. The unit vector `normal` is the normal of the
+/// discs and of the point. The discs are flat or curved to either side, and thick enough to contain
+/// the point.
+///
+/// # Errors
+/// The first violation.
+pub fn check(
+    field: &impl DistanceField,
+    center: Vec3,
+    radius: f32,
+    inside: Vec3,
+    normal: Vec3,
+) -> Result<(), Violation> {
+    let point = center + inside * radius;
+    let penetration = field.penetration(point, normal);
+    let rounding = 16.0 * f32::EPSILON * (center.length() + radius);
+    let radius = radius + rounding;
+    let ball = field.penetration_bound(center, radius);
+    let height = (point - center).dot(normal);
+    let square = (point - center - normal * height).length_squared();
+    let mut discs = Discs {
+        centers: Points::splat(center),
+        radii: [radius; LANES],
+        normals: Points::splat(normal),
+        lifts: [0.0; LANES],
+        bulges: [0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius],
+        thickness: [0.0; LANES],
+    };
+    for lane in 0..LANES {
+        let above = height - discs.bulges[lane] * square;
+        // The flat disc stays at the centre. The next two are lifted halfway to the point, with the
+        // other half as their thickness; the last one is lifted to the point.
+        discs.lifts[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
+        discs.thickness[lane] = (above - discs.lifts[lane]).abs() + rounding;
+    }
+    let bounds = field.penetration_bounds(&discs);
+    let pieces = [
+        ("ball", ball),
+        ("disc", bounds[0]),
+        ("bowl", bounds[1]),
+        ("dome", bounds[2]),
+        ("deep bowl", bounds[3]),
+    ];
+    for (piece, bound) in pieces {
+        if penetration > bound {
+            return Err(Violation::Bound {
+                piece,
+                center,
+                radius,
+                bound,
+                point,
+                penetration,
+            });
+        }
+    }
+    for disc in bounds {
+        if disc > ball + rounding {
+            return Err(Violation::Disc { center, disc, ball });
+        }
+    }
+    let mut points = Points::splat(center);
+    points.set(1, point);
+    let together = field.penetrations(&points, &Points::splat(normal))[1];
+    if together.to_bits() != penetration.to_bits() {
+        return Err(Violation::Lanes {
+            point,
+            alone: penetration,
+            together,
+        });
+    }
+    let (together, gradients) = field.penetrations_and_gradients(&points, &Points::splat(normal));
+    if together[1].to_bits() != penetration.to_bits() {
+        return Err(Violation::Lanes {
+            point,
+            alone: penetration,
+            together: together[1],
+        });
+    }
+    let gradient = gradients.get(1);
+    if !gradient.is_finite() {
+        return Err(Violation::Gradient { point, gradient });
+    }
+    let bounds = field.bounds();
+    if penetration > field.error_bound() && bounds.distance_outside(point) > rounding {
+        return Err(Violation::Bounds {
+            point,
+            penetration,
+            bounds,
+        });
+    }
+    let length = field.inward_direction(point).length();
+    if length != 0.0 && (length - 1.0).abs() > 1e-4 {
+        return Err(Violation::Direction { point, length });
+    }
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! Why a voxelmap is refused.
+
+use crate::aabb::Aabb;
+use crate::map::accuracy::Accuracy;
+
+/// Why a [`Voxelmap`](crate::Voxelmap) was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum VoxelmapError {
+    /// The number of values does not match the dimensions of a dense store, or the cells of a
+    /// sparse one.
+    #[error("{values} values in a store that needs {expected}")]
+    ValueCount {
+        /// Values given.
+        values: usize,
+        /// Values needed.
+        expected: usize,
+    },
+    /// Interpolation needs two voxels along each axis.
+    #[error("a map needs two voxels along each axis, not {0:?}")]
+    Thin([u32; 3]),
+    /// The cells of a sparse store are inconsistent.
+    #[error("the cells of the sparse store do not fit together")]
+    Cells,
+    /// A value is not finite.
+    #[error("a stored distance is not finite")]
+    NotFinite,
+    /// Store and grid have different dimensions.
+    #[error("values for {store:?} voxels on a grid of {grid:?}")]
+    Dims {
+        /// Voxels along each axis of the store.
+        store: [u32; 3],
+        /// And of the grid.
+        grid: [u32; 3],
+    },
+    /// The number of bends is neither 0 nor that of the cells.
+    #[error("{bends} bends for {cells} cells of voxels")]
+    Bends {
+        /// Bends given.
+        bends: usize,
+        /// Bends needed.
+        cells: usize,
+    },
+    /// σ is invalid.
+    #[error("the value of one step must be positive and finite, not {0} m")]
+    Sigma(f32),
+    /// An error bound is invalid.
+    #[error("error bounds must be finite and not negative, near not above far: {0:?}")]
+    Accuracy(Accuracy),
+    /// The solid leaves the box between the outermost voxel centres.
+    #[error("the solid {0:?} does not lie between the outermost voxel centres of the grid")]
+    Solid(Aabb),
+}

@@ -1,0 +1,174 @@
+//! A signed distance field on a grid.
+
+use wide::f32x4;
+
+use crate::aabb::Aabb;
+use crate::map::accuracy::Accuracy;
+use crate::map::error::VoxelmapError;
+use crate::map::grid::Grid;
+use crate::map::store::{CELL, Store, product};
+use crate::simd::{LANES, Voxels};
+use crate::storage::Storage;
+
+/// A signed distance field on a grid: one value v a voxel, times σ, is the penetration of the
+/// voxel's centre (section 2.1.1).
+///
+/// With σ = s, the voxel size, the values are layers; with σ = λ = 10^-p they are distances
+/// truncated to the precision p (eq. 1); with σ = 1 m they are floating-point distances. A map is
+/// sampled through one of its views, which differ in the value between the centres:
+/// [`local`](Self::local), [`linear`](Self::linear) and [`trilinear`](Self::trilinear).
+#[derive(Clone, Debug)]
+pub struct Voxelmap<'a> {
+    grid: Grid,
+    sigma: f32,
+    solid: Aabb,
+    accuracy: Accuracy,
+    store: Store<'a>,
+    bends: Storage<'a, u8>,
+}
+
+/// The code of an unknown curvature bound.
+pub const UNKNOWN_BEND: u8 = u8::MAX;
+
+/// The number of steps of a curvature bound that make up the voxel size.
+pub const BEND_STEPS: f32 = 127.0;
+
+impl<'a> Voxelmap<'a> {
+    /// A map over `grid` with the values of `store` in units of `sigma` metres. `solid` is a box
+    /// around the mesh the map was made from, and lies between the outermost voxel centres.
+    ///
+    /// `bends` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z),
+    /// valid in it and in the cells around it. In steps of s / 127, it bounds from above the second
+    /// differences of the values along an axis, and the deviation from a plane of any square of
+    /// four neighbours; 255 where it is unknown. It makes queries faster, and must be correct. It
+    /// may be empty.
+    ///
+    /// # Errors
+    /// When the parts are inconsistent.
+    pub fn new(
+        grid: Grid,
+        sigma: f32,
+        solid: Aabb,
+        accuracy: Accuracy,
+        store: Store<'a>,
+        bends: Storage<'a, u8>,
+    ) -> Result<Self, VoxelmapError> {
+        if store.dims() != grid.dims() {
+            return Err(VoxelmapError::Dims {
+                store: store.dims(),
+                grid: grid.dims(),
+            });
+        }
+        let cells = product(store.cell_dims());
+        if !bends.is_empty() && bends.len() != cells {
+            return Err(VoxelmapError::Bends {
+                bends: bends.len(),
+                cells,
+            });
+        }
+        if !(sigma > 0.0 && sigma.is_finite()) {
+            return Err(VoxelmapError::Sigma(sigma));
+        }
+        let Accuracy {
+            near_m,
+            far_m,
+            band_m,
+        } = accuracy;
+        if !(near_m >= 0.0 && near_m <= far_m && far_m.is_finite() && band_m >= 0.0) {
+            return Err(VoxelmapError::Accuracy(accuracy));
+        }
+        let bounds = grid.center_bounds();
+        let tolerance = 0.01 * grid.voxel_size();
+        let inside = (solid.min - bounds.min).min_element() >= -tolerance
+            && (bounds.max - solid.max).min_element() >= -tolerance
+            && (solid.max - solid.min).min_element() >= 0.0;
+        if !inside {
+            return Err(VoxelmapError::Solid(solid));
+        }
+        Ok(Self {
+            grid,
+            sigma,
+            solid,
+            accuracy,
+            store,
+            bends,
+        })
+    }
+
+    /// The grid of the map, in the field frame.
+    #[inline]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Metres of one step of a value: s for layers, λ for scaled distances (eq. 4).
+    #[inline]
+    pub fn sigma(&self) -> f32 {
+        self.sigma
+    }
+
+    /// The box around the mesh, in the field frame.
+    #[inline]
+    pub fn solid(&self) -> Aabb {
+        self.solid
+    }
+
+    /// Error bounds of the values.
+    #[inline]
+    pub fn accuracy(&self) -> Accuracy {
+        self.accuracy
+    }
+
+    /// The values v; positive inside.
+    #[inline]
+    pub fn store(&self) -> &Store<'a> {
+        &self.store
+    }
+
+    /// The curvature bounds of the cells: see [`new`](Self::new).
+    pub fn bends(&self) -> &[u8] {
+        &self.bends
+    }
+
+    /// The curvature bounds around voxels in metres. Unknown ones are huge but finite, so that times a
+    /// distance of zero they give zero.
+    #[inline(always)]
+    pub(crate) fn bends_at(&self, voxels: Voxels) -> f32x4 {
+        let unknown = f32x4::splat(f32::MAX);
+        if self.bends.is_empty() {
+            return unknown;
+        }
+        let cells = voxels
+            .blocks(CELL.ilog2() as i32)
+            .linear(self.store.cell_dims());
+        let mut steps = [0.0; LANES];
+        for lane in 0..LANES {
+            steps[lane] = f32::from(self.bends[cells[lane]]);
+        }
+        let steps = f32x4::new(steps);
+        let is_unknown = steps.simd_eq(f32x4::splat(f32::from(UNKNOWN_BEND)));
+        is_unknown.select(
+            unknown,
+            steps * (self.grid.voxel_size() * (1.0 / BEND_STEPS)),
+        )
+    }
+
+    /// V of a voxel's centre in metres.
+    #[inline]
+    pub fn center_penetration(&self, voxel: [u32; 3]) -> f32 {
+        self.store.value(voxel) * self.sigma
+    }
+
+    /// The same map owning its values.
+    #[cfg(feature = "alloc")]
+    pub fn into_owned(self) -> Voxelmap<'static> {
+        Voxelmap {
+            grid: self.grid,
+            sigma: self.sigma,
+            solid: self.solid,
+            accuracy: self.accuracy,
+            store: self.store.into_owned(),
+            bends: self.bends.into_owned(),
+        }
+    }
+}

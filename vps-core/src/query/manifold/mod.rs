@@ -1,0 +1,225 @@
+//! Contact reduction: a few contacts that represent the contact set.
+
+mod buffer;
+mod collectors;
+mod polygon;
+mod searched;
+mod source;
+mod weighting;
+
+use glamx::Vec3;
+
+use self::polygon::Polygon;
+use self::source::{CandidateSource, ListedCandidates, best};
+use self::weighting::{DepthWeighting, SUPPORT_CONTACTS};
+use crate::query::contact::Contact;
+
+/// At most `N` contacts that represent a contact set (contact reduction): the deepest one first, then
+/// those that give the manifold the largest area (section 3.2).
+///
+/// The area a contact adds is weighted by its depth: the further outside of the solid it lies than the
+/// deepest one, the less it counts, with half weight at a hundredth of the margin. The points on which
+/// a body rests thus come before points that are further apart but above the ground; without them the
+/// body would never come to rest. While a body moves, other points touch the ground in the next step:
+/// the distance of half weight is then its motion since the previous query
+/// ([`Query::with_motion`](crate::Query::with_motion)). Contacts with less than half the weight of the
+/// deepest one only fill up the manifold to four contacts, since the body may tip onto them next.
+///
+/// More than four contacts are selected only where the field is curved, that is where the
+/// penetrations of contacts of sufficient weight differ from those in a half-space: four contacts
+/// support a body on a plane, but not in a thread. The weight also decreases with the angle between
+/// the normals of a contact and of the deepest one, down to a quarter: points close to an edge come
+/// before those on it, whose normals belong to neither side. Of contacts with equal scores the
+/// first is selected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactManifold<const N: usize> {
+    contacts: [Contact; N],
+    len: usize,
+}
+
+impl<const N: usize> ContactManifold<N> {
+    const EMPTY: Self = Self {
+        contacts: [Contact {
+            point: 0,
+            position: Vec3::ZERO,
+            normal: Vec3::ZERO,
+            penetration: 0.0,
+        }; N],
+        len: 0,
+    };
+
+    /// Reduces `contacts`, found by a query with `margin` metres and a `motion`. The area is that
+    /// of the polygon of the selected points, seen `along` a unit vector in the shell frame: the
+    /// direction in which penetration grows at the deepest point. Costs `N` passes.
+    ///
+    /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
+    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32, motion: Option<f32>) -> Self {
+        let weighting = DepthWeighting { margin, motion };
+        let deepest = best(contacts, |c| Some(c.penetration));
+        Self::reduce(
+            deepest,
+            |_| along,
+            weighting,
+            &mut ListedCandidates(contacts),
+        )
+    }
+
+    fn reduce(
+        deepest: Option<Contact>,
+        along: impl FnOnce(&Contact) -> Vec3,
+        weighting: DepthWeighting,
+        source: &mut impl CandidateSource<N>,
+    ) -> Self {
+        let mut manifold = Self::EMPTY;
+        if N == 0 {
+            return manifold;
+        }
+        let Some(deepest) = deepest else {
+            return manifold;
+        };
+        let mut polygon = Polygon::new(&deepest, along(&deepest), weighting);
+        manifold.push(deepest);
+        let mut max_contacts = N.min(SUPPORT_CONTACTS);
+        let mut is_filled_up = false;
+        while manifold.len < max_contacts {
+            let mut selected = source.best(&polygon);
+            if selected.is_none() && manifold.len < SUPPORT_CONTACTS && !is_filled_up {
+                (polygon.penetration_threshold, is_filled_up) = (-weighting.margin, true);
+                selected = source.best(&polygon);
+            }
+            let Some(next) = selected else {
+                break;
+            };
+            polygon.insert(next.position);
+            manifold.push(next);
+            let may_extend =
+                manifold.len == SUPPORT_CONTACTS && SUPPORT_CONTACTS < N && !is_filled_up;
+            if may_extend && source.is_curved(&polygon) {
+                max_contacts = N;
+            }
+        }
+        manifold
+    }
+
+    /// The selected contacts, deepest first.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts[..self.len]
+    }
+
+    fn push(&mut self, contact: Contact) {
+        self.contacts[self.len] = contact;
+        self.len += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    fn contact(point: u32, x: f32, z: f32, penetration: f32) -> Contact {
+        Contact {
+            point,
+            position: Vec3::new(x, 0.0, z),
+            normal: Vec3::Y,
+            penetration,
+        }
+    }
+
+    fn picked<const N: usize>(contacts: &[Contact]) -> Vec<u32> {
+        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1, Some(0.0));
+        manifold.contacts().iter().map(|c| c.point).collect()
+    }
+
+    #[test]
+    fn the_deepest_comes_first_and_the_corners_follow() {
+        // A 5 x 5 grid of contacts, deepest in the middle of one side.
+        let contacts: Vec<_> = (0..25)
+            .map(|i| {
+                let (x, z) = ((i % 5) as f32, (i / 5) as f32);
+                contact(i, x, z, if i == 2 { 1.0 } else { 0.5 })
+            })
+            .collect();
+        let mut four = picked::<4>(&contacts);
+        assert_eq!(four[0], 2);
+        four.sort_unstable();
+        // (2, 0) with a far corner, and two more that span the largest quadrilateral.
+        assert_eq!(four.len(), 4);
+        assert!(four.contains(&20) && four.contains(&24));
+        let mut five = picked::<5>(&contacts);
+        five.sort_unstable();
+        assert_eq!(five, [0, 2, 4, 20, 24]);
+    }
+
+    #[test]
+    fn a_point_that_touches_comes_before_one_above_it() {
+        let mut contacts = std::vec![contact(0, 0.0, 0.0, 0.01), contact(1, 4.0, 0.0, 0.0)];
+        // A little further out, where its weight is a third.
+        contacts.push(contact(2, 4.5, 0.0, -0.0015));
+        assert_eq!(picked::<2>(&contacts), [0, 1]);
+        contacts.remove(1);
+        assert_eq!(picked::<2>(&contacts), [0, 2]);
+        // Where its weight is too low, unless nothing else is left.
+        contacts[1].penetration = -0.05;
+        assert_eq!(picked::<2>(&contacts), [0, 2]);
+        contacts.push(contact(3, 0.0, 0.001, 0.0));
+        assert_eq!(picked::<2>(&contacts), [0, 3]);
+        assert_eq!(picked::<3>(&contacts), [0, 3, 2]);
+    }
+
+    #[test]
+    fn a_moving_shell_counts_the_points_it_touches_next() {
+        let mut contacts = [
+            contact(0, 0.0, 0.0, 0.01),
+            contact(1, 4.0, 0.0, 0.0),
+            contact(2, 8.0, 0.0, -0.01),
+        ];
+        let second = |contacts: &[Contact], motion| {
+            let manifold = ContactManifold::<2>::spread(contacts, Vec3::Y, 0.1, motion);
+            manifold.contacts()[1].point
+        };
+        assert_eq!(
+            [0.0, 0.01, 0.1].map(|m| second(&contacts, Some(m))),
+            [1, 1, 2]
+        );
+        // A shell that touches already may have been placed there.
+        assert_eq!(second(&contacts, None), 1);
+        for contact in &mut contacts {
+            contact.penetration -= 0.04;
+        }
+        assert_eq!(second(&contacts, None), 2);
+    }
+
+    #[test]
+    fn four_contacts_are_enough_on_a_plane() {
+        let ground: Vec<_> = (0..100)
+            .map(|i| contact(i, (i % 10) as f32, (i / 10) as f32, 0.01))
+            .collect();
+        assert_eq!(picked::<8>(&ground).len(), 4);
+        // A slope is flat as well: penetration grows upwards.
+        let slope = ground.iter().map(|c| Contact {
+            position: c.position.with_y(0.1 * c.position.x),
+            penetration: 0.01 + 0.1 * c.position.x,
+            ..*c
+        });
+        assert_eq!(picked::<8>(&slope.collect::<Vec<_>>()).len(), 4);
+        // A wall is not: there penetration stays the same upwards.
+        let wall = (0..100).map(|i| Contact {
+            position: Vec3::new(-1.0, (i % 10) as f32, (i / 10) as f32),
+            ..contact(100 + i, 0.0, 0.0, 0.01)
+        });
+        let both: Vec<_> = ground.iter().copied().chain(wall).collect();
+        assert!(picked::<8>(&both).len() > 4);
+        assert_eq!(picked::<4>(&both).len(), 4);
+    }
+
+    #[test]
+    fn points_that_add_no_area_are_not_selected() {
+        let line: Vec<_> = (0..9).map(|i| contact(i, i as f32, 0.0, 0.1)).collect();
+        assert_eq!(picked::<4>(&line), [0, 8]);
+        assert_eq!(picked::<4>(&[contact(3, 0.0, 0.0, 0.1); 7]), [3]);
+        assert_eq!(picked::<4>(&[]), []);
+        assert_eq!(picked::<0>(&line), []);
+    }
+}

@@ -1,0 +1,107 @@
+//! Contact reduction during the search, without a list of all contacts.
+
+use glamx::Vec3;
+
+use super::ContactManifold;
+use super::buffer::CandidateBuffer;
+use super::collectors::{BestCandidate, OffPlane};
+use super::polygon::Polygon;
+use super::source::CandidateSource;
+use super::weighting::DepthWeighting;
+use crate::field::DistanceField;
+use crate::query::contact::Contact;
+use crate::query::posed::Query;
+use crate::query::search::ROOT;
+use crate::query::work::CountWork;
+use crate::simd::multiversion::multiversion;
+
+/// The contacts of a query, some of them buffered.
+struct SearchedCandidates<'q, 't, F: ?Sized, W> {
+    query: &'q Query<'t, F, W>,
+    buffer: CandidateBuffer,
+}
+
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+    /// The manifold of the contact set, its area seen along the field's normal at the deepest
+    /// point. It equals that of [`ContactManifold::spread`], but not all contacts are visited.
+    ///
+    /// One search finds the deepest contact and those of sufficient weight. If these are too few, a
+    /// second search finds those of low weight. Contacts of even lower weight, or that do not fit
+    /// on the stack, are searched for one by one as far as they could have a higher score.
+    pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
+        // Most bodies of a scene are apart: the buffer is not initialised for them.
+        if !self.may_touch() {
+            return ContactManifold::EMPTY;
+        }
+        let weighting = DepthWeighting {
+            margin: self.margin,
+            motion: self.motion,
+        };
+        let mut buffer = CandidateBuffer::new(weighting);
+        self.collect_from_hint(&mut buffer);
+        buffer.discard_shallow();
+        let deepest = buffer.deepest.found;
+        let along = |deepest: &Contact| {
+            let at = self.rotation * deepest.position + self.translation;
+            let inward = self.rotation.transpose() * self.field.inward_direction(at);
+            if inward == Vec3::ZERO {
+                -deepest.normal
+            } else {
+                inward
+            }
+        };
+        let mut source = SearchedCandidates {
+            query: self,
+            buffer,
+        };
+        ContactManifold::reduce(deepest, along, weighting, &mut source)
+    }
+}
+
+impl<F, W, const N: usize> CandidateSource<N> for SearchedCandidates<'_, '_, F, W>
+where
+    F: DistanceField + ?Sized,
+    W: CountWork,
+{
+    fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact> {
+        let buffer = &mut self.buffer;
+        if polygon.penetration_threshold < buffer.threshold
+            && !buffer.is_full
+            && !buffer.includes_low_weights
+        {
+            buffer.lower_threshold();
+            multiversion(
+                #[inline(always)]
+                || self.query.search(ROOT, buffer),
+            );
+        }
+        let mut best = BestCandidate {
+            polygon,
+            added_from: f32::INFINITY,
+            threshold: f32::MIN_POSITIVE,
+            found: None,
+        };
+        if !buffer.is_full {
+            multiversion(
+                #[inline(always)]
+                || buffer.add_to(self.query.tree, &mut best),
+            );
+            if buffer.threshold <= polygon.penetration_threshold {
+                return best.found;
+            }
+            best.added_from = buffer.threshold;
+        }
+        self.query.collect(best).found
+    }
+
+    fn is_curved(&self, polygon: &Polygon<N>) -> bool {
+        if self.buffer.is_full {
+            return self.query.collect(OffPlane::new(polygon)).found;
+        }
+        let mut candidates = self.buffer.candidates[..self.buffer.len].iter();
+        candidates.any(|batch| {
+            let positions = batch.positions(self.query.tree);
+            polygon.off_plane(positions, batch.penetrations()).any()
+        })
+    }
+}

@@ -1,0 +1,21 @@
+//! Queries: a pointshell posed in a distance field.
+
+mod body_pair;
+pub(crate) mod collectors;
+pub(crate) mod contact;
+mod contacts;
+mod manifold;
+pub(crate) mod posed;
+mod search;
+mod segments;
+mod sweep;
+mod time_critical;
+pub(crate) mod work;
+
+pub use self::body_pair::{Body, BodyPair, PairContact, Shells, Side};
+pub use self::contact::Contact;
+pub use self::manifold::ContactManifold;
+pub use self::posed::Query;
+pub use self::sweep::{Impact, Sweep};
+pub use self::time_critical::Estimate;
+pub use self::work::{CountWork, Work};

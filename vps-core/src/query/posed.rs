@@ -1,0 +1,104 @@
+//! A pointshell posed in a distance field.
+
+use glamx::{Mat3, Pose3, Vec3};
+
+use crate::field::DistanceField;
+use crate::query::work::{CountWork, Work};
+use crate::shell::PointSphereTree;
+use crate::simd::Vectors;
+
+/// A pointshell posed in a distance field (sections 2.2 to 2.4).
+///
+/// A point is in contact when its penetration is at least 0, or with a margin at least −margin.
+/// Every query gives the same result as a test of all points
+/// ([`for_each_contact_flat`](Self::for_each_contact_flat)), but prunes clusters that cannot change
+/// it. With a pose that is not finite there are no contacts.
+#[derive(Debug)]
+pub struct Query<'q, F: ?Sized, W = ()> {
+    pub(crate) tree: &'q PointSphereTree<'q>,
+    pub(crate) field: &'q F,
+    pub(crate) rotation: Mat3,
+    pub(crate) translation: Vec3,
+    pub(crate) has_finite_pose: bool,
+    pub(crate) margin: f32,
+    pub(crate) motion: Option<f32>,
+    /// Index of the point that is tested first.
+    pub(crate) hint: Option<u32>,
+    /// Padding of balls in metres: rounding moves a ball and its points differently.
+    pub(crate) rounding_slack: f32,
+    pub(crate) work: W,
+}
+
+impl<F: ?Sized, W: Copy> Clone for Query<'_, F, W> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: ?Sized, W: Copy> Copy for Query<'_, F, W> {}
+
+impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
+    /// A query for contacts; `shell_to_field` transforms shell coordinates to field coordinates.
+    pub fn new(tree: &'q PointSphereTree<'q>, field: &'q F, shell_to_field: Pose3) -> Self {
+        let translation = shell_to_field.translation;
+        let reach = tree.reach() + translation.length();
+        Self {
+            tree,
+            field,
+            rotation: Mat3::from_quat(shell_to_field.rotation),
+            translation,
+            has_finite_pose: shell_to_field.is_finite(),
+            margin: 0.0,
+            motion: Some(0.0),
+            hint: None,
+            rounding_slack: 16.0 * f32::EPSILON * reach,
+            work: (),
+        }
+    }
+
+    /// The same query, counting the clusters and points it tests.
+    pub fn counting<'w>(self, work: &'w Work) -> Query<'q, F, &'w Work> {
+        Query {
+            tree: self.tree,
+            field: self.field,
+            rotation: self.rotation,
+            translation: self.translation,
+            has_finite_pose: self.has_finite_pose,
+            margin: self.margin,
+            motion: self.motion,
+            hint: self.hint,
+            rounding_slack: self.rounding_slack,
+            work,
+        }
+    }
+}
+
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+    /// Speculative distance: points up to `margin` metres outside of the solid count as contacts too.
+    pub fn with_margin(self, margin: f32) -> Self {
+        Self { margin, ..self }
+    }
+
+    /// Tells [`manifold`](Self::manifold) how far the shell has moved, towards the solid or away
+    /// from it, since the previous query, in metres; 0 by default. `None` if it was further away
+    /// than the margin: the shell is then assumed to move on by the separation of its deepest
+    /// point.
+    pub fn with_motion(self, motion: Option<f32>) -> Self {
+        Self { motion, ..self }
+    }
+
+    /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and [`manifold`](Self::manifold)
+    /// test a point first that is likely to be deep, such as the deepest of the previous step (a
+    /// warm start). The result is the same. An index out of range is ignored.
+    pub fn with_hint(self, point: u32) -> Self {
+        let hint = Some(point).filter(|&p| (p as usize) < self.tree.point_count());
+        Self { hint, ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn to_field(&self, points: Vectors) -> Vectors {
+        points
+            .rotated(&self.rotation)
+            .plus(Vectors::splat(self.translation))
+    }
+}

@@ -1,0 +1,42 @@
+//! The deepest contact of each segment.
+
+use crate::field::DistanceField;
+use crate::query::collectors::{AllContacts, DeepestContact};
+use crate::query::contact::Contact;
+use crate::query::posed::Query;
+use crate::query::search::ROOT;
+use crate::query::work::CountWork;
+use crate::simd::multiversion::multiversion;
+
+impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+    /// Calls `visit` with the deepest contact of each cluster of a level that has one, in the order
+    /// of the clusters: the segmented traverse (section 2.4). The arguments are the index of the
+    /// cluster in its level, and the first of equally deep contacts.
+    ///
+    /// Level 1 has one cluster, and its contact is the [`deepest`](Self::deepest) of all. A level
+    /// below the leaves counts as that of the leaves.
+    pub fn for_each_segment(&self, level: u32, mut visit: impl FnMut(u32, Contact)) {
+        let level = level.clamp(1, self.tree.level_count());
+        let start = self.tree.level_starts()[level as usize - 1];
+        let mut all = AllContacts::new(self.margin, |_| ());
+        multiversion(
+            #[inline(always)]
+            || {
+                self.descend(
+                    ROOT,
+                    level,
+                    &mut all,
+                    #[inline(always)]
+                    |segment, _, _| {
+                        let mut deepest = DeepestContact::new(self.margin);
+                        self.search((level, segment), &mut deepest);
+                        if let Some(deepest) = deepest.found {
+                            visit(segment - start, deepest);
+                        }
+                        true
+                    },
+                );
+            },
+        );
+    }
+}
