@@ -1,4 +1,4 @@
-//! How long the steps of a build take, on the bunny of the paper's experiment. Fetch it first:
+//! Times of the stages of a build, on the bunny of the paper's experiment. Fetch it first with
 //! `just fetch`.
 
 use std::path::Path;
@@ -24,7 +24,7 @@ fn options(margin: u32, points: u32) -> BuildOptions {
     }
 }
 
-/// What the distances take, of a whole build.
+/// Time of the distance stage of a whole build.
 fn distances(mesh: &Mesh, options: &BuildOptions) -> Duration {
     let times = Mutex::new(Vec::new());
     let note = |stage| times.lock().unwrap().push((stage, Instant::now()));
@@ -61,7 +61,7 @@ fn builder(criterion: &mut Criterion) {
     }
     group.finish();
 
-    // The same voxels by a general library, with all of them stored and without.
+    // The same voxels by a general library, and by dense and sparse builds.
     let mut group = criterion.benchmark_group("distances_114x113x90");
     group.sample_size(10);
     let dense = BuildOptions {

@@ -1,6 +1,6 @@
-//! Measures the builder on the bunny and writes `reports/builder/README.md`: speed, sizes, errors.
+//! Measures the builder on the bunny, and writes `reports/builder/README.md`: speed, sizes, errors.
 //!
-//! `just builder-report`, which builds the command and fetches the bunny first.
+//! Run by `just builder-report`, which builds the command and fetches the bunny first.
 
 #[path = "../tests/it/support.rs"]
 #[expect(dead_code)]
@@ -26,10 +26,10 @@ const SCALE: &str = "0.135";
 const VOXEL_SIZE: &str = "0.00256";
 const POINTS: &str = "35596";
 
-/// How many voxels are compared with brute force, near the surface and elsewhere.
+/// Voxels compared with brute force, near the surface and elsewhere.
 const SAMPLES: usize = 1000;
 
-/// How often times are taken; the middle one counts.
+/// Repetitions of each timing; the median counts.
 const RUNS: usize = 3;
 
 fn main() -> Result<(), Error> {
@@ -57,7 +57,7 @@ struct Builder {
     work: PathBuf,
 }
 
-/// What the command says of a build, and what it built.
+/// The JSON summary of a build, and its asset.
 struct Run {
     json: Value,
     file: PathBuf,
@@ -95,7 +95,7 @@ impl Run {
         self.json[name].as_f64().unwrap_or(f64::NAN)
     }
 
-    /// All but reading the mesh.
+    /// All stages except reading the mesh.
     fn built_s(&self) -> f64 {
         ["voxels_s", "distances_s", "points_s", "tree_s"]
             .map(|s| self.number(s))
@@ -117,7 +117,7 @@ fn report(
 ) -> Result<String, Error> {
     let bunny = bunny.scaled(SCALE.parse()?)?;
     let full = ["--margin", "100", "--points", POINTS];
-    // Taken in turns, so that a slow moment of the machine hits both.
+    // Alternated, so that a disturbance affects both.
     let (mut coarse_runs, mut fine_runs) = (Vec::new(), Vec::new());
     for _ in 0..RUNS {
         coarse_runs.push(builder.run(bunny_file, &full)?);
@@ -136,7 +136,7 @@ fn report(
     let peak = times(&coarse_runs, &|run| run.number("peak_memory_bytes"));
     let first = &coarse_runs[0];
 
-    // The voxels that are compared, with their exact penetrations.
+    // The voxels compared, with their exact penetrations.
     let reference = builder.run(bunny_file, &["--margin", "100", "--points", "1"])?;
     let asset = read_asset(&reference.file)?;
     let grid = *asset.voxelmap.grid();
@@ -374,8 +374,7 @@ impl Voxels {
     }
 }
 
-/// How many of so many balls, outside of the mesh by less than a hundredth of their distance, are
-/// taken to touch nothing though they touch; or, a little larger, touch nothing by their bound.
+/// The number of random balls that just reach the surface, but touch nothing by their bound.
 fn wrong_balls(mesh: &Mesh, map: &Voxelmap<'_>) -> usize {
     let mut random = ChaCha8Rng::seed_from_u64(4102);
     let bounds = map.grid().bounds();
@@ -388,13 +387,13 @@ fn wrong_balls(mesh: &Mesh, map: &Voxelmap<'_>) -> usize {
         .collect();
     let is_wrong = |&&center: &&Vec3| {
         let distance = -support::exact_penetration(mesh, center.as_dvec3()) as f32;
-        // A ball that touches the surface, and so one that must not be passed over.
+        // A ball that touches the surface, and must not be culled.
         field.penetration_bound(center, distance.max(0.0) * (1.0 + 1e-5)) < 0.0
     };
     centers.par_iter().filter(is_wrong).count()
 }
 
-/// Signed distances by the other library, positive outside, z fastest.
+/// Signed distances of the other library, positive outside, z fastest.
 fn by_mesh_to_sdf(mesh: &Mesh, grid: &Grid) -> Vec<f32> {
     let vertices: Vec<[f32; 3]> = mesh
         .vertices()

@@ -1,3 +1,5 @@
+//! A cache of assets on disk.
+
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -5,57 +7,61 @@ use std::time::Instant;
 use vps_core::{Asset, VPS_VERSION};
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::{BuildError, BuildOptions, FileError, Mesh, Stage, build, read_asset, write_asset};
+use crate::error::BuildError;
+use crate::file::{FileError, read_asset, write_asset};
+use crate::mesh::Mesh;
+use crate::options::BuildOptions;
+use crate::pipeline::{Stage, build};
 
-/// Which builder this is: assets of another may differ.
+/// Identifies this builder: assets of another one may differ.
 pub const BUILDER: &str = env!("VPS_BUILDER");
 
-/// A folder of assets, each built once and kept by what it was made from: vertices, triangles,
-/// options, builder and version of the format.
+/// A folder of assets, each built once. The key is a hash of vertices, triangles, options, builder and
+/// format version.
 #[derive(Clone, Debug)]
 pub struct AssetCache {
     folder: PathBuf,
 }
 
-/// Why a cache has no asset.
+/// Why a cache cannot provide an asset.
 #[derive(Debug, thiserror::Error)]
 pub enum CacheError {
-    /// It was not there, and cannot be built.
+    /// The build failed.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// It was built, and cannot be kept.
+    /// The file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
 }
 
-/// An asset and what it took.
+/// An asset of a cache.
 #[derive(Clone, Debug)]
 pub struct CachedAsset {
     /// The asset.
     pub asset: Arc<Asset<'static>>,
-    /// What it is known by, 32 digits: the name of its file.
+    /// Its key, 32 hexadecimal digits: the name of its file.
     pub key: String,
     /// Its file.
     pub file: PathBuf,
     /// Size of its file in bytes.
     pub file_bytes: u64,
-    /// Time it took to build in seconds, if it was not there.
+    /// Build time in seconds, if it was not cached.
     pub build_s: Option<f64>,
 }
 
 impl AssetCache {
-    /// A cache in a folder, which is made when it is needed.
+    /// A cache in a folder, created when needed.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self {
             folder: folder.into(),
         }
     }
 
-    /// The asset of a mesh, read from its file or built now; `progress` is told of each stage that
-    /// is begun. A damaged file is as good as none.
+    /// The asset of a mesh, read from its file or built now. `progress` is called at the start of each
+    /// stage. A damaged file is replaced.
     ///
     /// # Errors
-    /// When it cannot be built or its file not be written.
+    /// When the build fails, or the file cannot be written.
     pub fn get(
         &self,
         mesh: &Mesh,
@@ -102,7 +108,7 @@ fn key(mesh: &Mesh, options: &BuildOptions) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PointCount, Resolution};
+    use crate::options::{PointCount, Resolution};
 
     #[test]
     fn builds_once_and_again_when_damaged_or_asked_for_something_else() {

@@ -1,3 +1,5 @@
+//! Files of assets, and atomic writes.
+
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -6,20 +8,20 @@ use vps_core::{Asset, FormatError, encode};
 /// Why a file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The system refused.
+    /// Input or output failed.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// The file is no asset.
+    /// The file is not a valid asset.
     #[error("{}: {source}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         source: FormatError,
     },
 }
@@ -27,7 +29,7 @@ pub enum FileError {
 /// Reads a `.vps` file.
 ///
 /// # Errors
-/// When the file cannot be read or is not a sound asset.
+/// When the file cannot be read or is not a valid asset.
 pub fn read_asset(path: &Path) -> Result<Asset<'static>, FileError> {
     let io = |source| FileError::Io {
         path: path.into(),
@@ -35,7 +37,7 @@ pub fn read_asset(path: &Path) -> Result<Asset<'static>, FileError> {
     };
     let mut file = std::fs::File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len() as usize;
-    // The file is used in place, which wants it at a multiple of 8.
+    // The file is used in place, aligned to 8 bytes.
     let mut words = vec![0_u64; length.div_ceil(8)];
     let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..length];
     file.read_exact(bytes).map_err(io)?;
@@ -46,7 +48,7 @@ pub fn read_asset(path: &Path) -> Result<Asset<'static>, FileError> {
     Ok(asset.into_owned())
 }
 
-/// Writes a `.vps` file, whole or not at all.
+/// Writes a `.vps` file atomically.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -54,8 +56,8 @@ pub fn write_asset(path: &Path, asset: &Asset<'_>) -> Result<(), FileError> {
     write_atomically(path, &encode(asset))
 }
 
-/// Writes a file under a temporary name beside `path` and renames it once it is complete. Missing
-/// folders are made.
+/// Writes a file under a temporary name beside `path`, and renames it once it is complete. Missing
+/// folders are created.
 ///
 /// # Errors
 /// When the file cannot be written; then nothing is left behind.
@@ -77,7 +79,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
         })
         .and_then(|()| std::fs::rename(&temporary, path));
     written.map_err(|source| {
-        // The error that matters is the first one.
+        // Report the first error.
         let _ = std::fs::remove_file(&temporary);
         io(source)
     })

@@ -18,64 +18,50 @@
 //!
 //! | step | module | in the paper |
 //! |---|---|---|
-//! | mesh from a file | [`read_mesh`] | |
-//! | what is wrong with it | [`Health`] | |
-//! | how deep a point is in it, exactly | [`ExactSolid`] | |
-//! | a solid from any mesh | `solid`, `winding`, `solid_angle` | |
-//! | walls thinner than a voxel | [`ThinWalls`] | |
-//! | surface voxels, inside, outside | `places` | 2.1.1 |
-//! | layers | `layers` | 2.1.1 |
-//! | closest points and distances | `bvh`, `distance` | 2.1.1 |
-//! | what may be interpolated | `sparse` | |
-//! | pointshell | `sample` | 2.1.2 |
-//! | clusters and their tree | `cluster`, `halves`, `nearest` | 2.1.2 |
-//! | minimal enclosing balls | [`ball`] | 2.1.2 |
+//! | mesh from a file | [`read_mesh`] (`mesh::read`) | |
+//! | health report, thin walls | [`Health`], [`ThinWalls`] (`inspection`) | |
+//! | solid from any mesh | `solid` | |
+//! | exact depth of a point | [`ExactSolid`] (`solid::exact`) | |
+//! | surface voxels, inside, outside | `solid::voxelize` | 2.1.1 |
+//! | layers | `field::layers` | 2.1.1 |
+//! | closest points and distances | `spatial::bvh`, `field::distance` | 2.1.1 |
+//! | sparse storage, curvature bounds | `field::sparse`, `field::curvature` | |
+//! | pointshell | `shell::poisson` | 2.1.2 |
+//! | clusters and their tree | `shell::tree` | 2.1.2 |
+//! | minimal enclosing balls | [`enclosing_ball`] | 2.1.2 |
 
 #![forbid(unsafe_code)]
 
-pub mod ball;
-mod bends;
-mod build;
-mod bvh;
 mod cache;
-mod cells;
-mod cluster;
-mod distance;
-mod edges;
-mod exact_solid;
+pub mod enclosing_ball;
+mod error;
+mod field;
 mod file;
-mod flat;
-mod frame;
-mod halves;
-mod health;
-mod kdtree;
-mod layers;
-mod mass;
+mod grid;
+mod inspection;
 mod mesh;
 pub mod models;
-mod nearest;
-mod places;
-mod read;
-mod sample;
-mod sat;
+mod options;
+mod pipeline;
+mod shell;
 mod solid;
-mod solid_angle;
-mod sparse;
-mod thin_walls;
-mod triangle;
-mod winding;
+mod spatial;
 
-pub use build::{
-    BuildError, BuildOptions, Built, ClosestPoints, Clustering, DENSE_VOXELS, Density, Encoding,
-    PointCount, Resolution, Stage, build,
-};
 pub use cache::{AssetCache, BUILDER, CacheError, CachedAsset};
-pub use exact_solid::{ExactSolid, Penetration};
+#[doc(hidden)]
+pub use enclosing_ball as ball;
+pub use error::BuildError;
 pub use file::{FileError, read_asset, write_asset, write_atomically};
-pub use health::Health;
-pub use mass::mass_properties;
+pub use inspection::health::Health;
+pub use inspection::thin_walls::ThinWalls;
+pub use mesh::mass::mass_properties;
+pub use mesh::read::{Fault, MeshFormat, ReadError, parse_mesh, read_mesh};
+pub use mesh::triangle::closest_point;
 pub use mesh::{Mesh, MeshError};
-pub use read::{Fault, MeshFormat, ReadError, parse_mesh, read_mesh};
-pub use solid::{Repairs, Sign};
-pub use thin_walls::ThinWalls;
-pub use triangle::closest_point;
+pub use options::{
+    BuildOptions, ClosestPoints, Clustering, DENSE_VOXELS, Density, Encoding, PointCount,
+    Resolution, Sign,
+};
+pub use pipeline::{Built, Stage, build};
+pub use solid::exact::{ExactSolid, Penetration};
+pub use solid::repair::Repairs;

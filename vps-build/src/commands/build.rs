@@ -223,7 +223,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
     progress.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        let mut object = for_machines(args, mesh.triangles().len(), &built, seconds);
+        let mut object = summary_json(args, mesh.triangles().len(), &built, seconds);
         let stages = stages.into_inner().unwrap_or_default();
         let ends = stages.iter().skip(1).map(|s| s.1).chain([built_at]);
         for (&(name, start), end) in stages.iter().zip(ends) {
@@ -234,13 +234,13 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
     } else if !args.quiet {
         print!(
             "{}",
-            for_people(args, mesh.triangles().len(), &built, seconds)
+            summary_text(args, mesh.triangles().len(), &built, seconds)
         );
     }
     Ok(())
 }
 
-/// A bar with a step for every stage; draws nothing when standard error is not a terminal.
+/// A bar with a step for every stage. Draws nothing if standard error is not a terminal.
 fn progress(hidden: bool) -> ProgressBar {
     let progress = ProgressBar::new(6);
     if hidden {
@@ -254,7 +254,7 @@ fn progress(hidden: bool) -> ProgressBar {
     progress
 }
 
-fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -> String {
+fn summary_text(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -> String {
     let Built { asset, .. } = built;
     let (map, tree) = (&asset.voxelmap, &asset.tree);
     let [x, y, z] = map.grid().dims();
@@ -275,7 +275,7 @@ fn for_people(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -
     )
 }
 
-/// What is to be said of thin walls, as a line; nothing where there are none.
+/// A line on thin walls; empty without them.
 fn thin_walls(walls: &ThinWalls, voxel_size: f32, is_auto: bool) -> String {
     let Some(enough) = walls.sufficient_voxel_m else {
         return String::new();
@@ -301,7 +301,7 @@ fn thin_walls(walls: &ThinWalls, voxel_size: f32, is_auto: bool) -> String {
     )
 }
 
-/// Where the asset's frame lies, if it is not that of the mesh.
+/// A line on the origin of the local frame; empty if it is that of the mesh.
 fn frame(origin: [f64; 3]) -> String {
     if origin == [0.0; 3] {
         return String::new();
@@ -310,9 +310,9 @@ fn frame(origin: [f64; 3]) -> String {
     format!("frame: its origin is at ({x}, {y}, {z}) m of the mesh, which is far from its own\n")
 }
 
-/// How the inside was found, in words.
+/// How the inside was found, and the repairs, in words.
 fn sign(name: SignName, repairs: &Repairs) -> String {
-    let way = match name {
+    let method = match name {
         SignName::Fill => "by what cannot be reached from outside",
         _ if repairs.is_none() => return "the mesh is watertight".into(),
         _ if repairs.left_open => "by generalised winding numbers, holes left open",
@@ -329,7 +329,7 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         left_open: _,
     } = *repairs;
     let mut done = Vec::new();
-    let mut tell = |count: usize, what: &str| {
+    let mut add = |count: usize, what: &str| {
         if count > 0 {
             let plural = if count == 1 { "" } else { "s" };
             done.push(
@@ -338,13 +338,13 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
             );
         }
     };
-    tell(removed_faces, "{} double or degenerate face(s) removed");
-    tell(turned_faces, "{} face(s) turned");
-    tell(
+    add(removed_faces, "{} double or degenerate face(s) removed");
+    add(turned_faces, "{} face(s) turned");
+    add(
         closed_holes,
         &format!("{{}} hole(s) closed with {added_faces} faces"),
     );
-    tell(hidden_faces, "{} face(s) within the solid removed");
+    add(hidden_faces, "{} face(s) within the solid removed");
     if united {
         done.push("parts that overlap or touch joined".into());
     }
@@ -352,12 +352,12 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         done.push("parts overlap still, depths near faces within the solid are too small".into());
     }
     if done.is_empty() {
-        return way.into();
+        return method.into();
     }
-    format!("{way}, after repairs: {}", done.join(", "))
+    format!("{method}, after repairs: {}", done.join(", "))
 }
 
-/// The most memory this process has had, where the system tells (Linux).
+/// Peak memory of this process in bytes, on Linux.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
@@ -367,7 +367,7 @@ fn peak_memory() -> Option<u64> {
     Some(kib * 1024)
 }
 
-fn for_machines(
+fn summary_json(
     args: &BuildArgs,
     triangles: usize,
     built: &Built,

@@ -1,4 +1,4 @@
-//! `vps-build export`: parts of an asset as a PLY file, to look at.
+//! `vps-build export`: parts of an asset as a PLY file, for viewers.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -71,8 +71,7 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// The text of an ASCII PLY file in the coordinates of the mesh, in which the drawing's frame
-    /// has this origin.
+    /// An ASCII PLY file in mesh coordinates. `origin` is that of the local frame.
     fn ply(&self, origin: DVec3) -> String {
         let mut text = String::from("ply\nformat ascii 1.0\n");
         let _ = writeln!(text, "element vertex {}", self.vertices.len());
@@ -113,7 +112,7 @@ impl Drawing {
     }
 }
 
-/// Colours that are far apart for numbers that are close.
+/// Colours that differ most for consecutive numbers.
 fn color(n: u32) -> [u8; 3] {
     let hue = (f64::from(n) * 0.618_034).fract() * 6.0;
     let channel = |shift: f64| {
@@ -124,7 +123,7 @@ fn color(n: u32) -> [u8; 3] {
 }
 
 fn points(tree: &PointSphereTree<'_>, level: Option<u32>) -> Drawing {
-    // The highest level at which a point stands for its cluster, one more than the leaves if none.
+    // The highest level at which a point is a parent point; below the leaves if none.
     let mut highest = vec![tree.level_count() + 1; tree.point_count()];
     for l in (1..=tree.level_count()).rev() {
         for cluster in tree.level(l) {
@@ -165,7 +164,7 @@ fn spheres(tree: &PointSphereTree<'_>, level: u32) -> Result<Drawing, Error> {
     Ok(drawing)
 }
 
-/// Those faces of the voxels nearest to the surface that no other of them hides.
+/// The visible faces of the voxels nearest to the surface.
 fn voxels(map: &Voxelmap<'_>) -> Drawing {
     let grid = map.grid();
     let half = 0.5 * grid.voxel_size();

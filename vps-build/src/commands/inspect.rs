@@ -1,4 +1,4 @@
-//! `vps-build inspect`: what a mesh or an asset is like.
+//! `vps-build inspect`: properties of a mesh or an asset.
 
 use std::path::PathBuf;
 
@@ -126,7 +126,7 @@ fn mesh_rows(args: &InspectArgs) -> Result<Vec<Row>, Error> {
 fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
     let (map, tree, mass) = (&asset.voxelmap, &asset.tree, asset.mass);
     let origin = DVec3::from_array(asset.origin);
-    // In the coordinates of the mesh.
+    // In mesh coordinates.
     let place = |local: Vec3| json!((origin + local.as_dvec3()).to_array());
     let accuracy = map.accuracy();
     let clusters: Vec<_> = (1..=tree.level_count())

@@ -1,9 +1,9 @@
-//! What the command can do, a file each.
+//! The subcommands, one file each.
 
 pub(crate) mod build;
 pub(crate) mod export;
 pub(crate) mod inspect;
 pub(crate) mod sample;
 
-/// One line for people.
+/// A message of one line.
 pub(crate) type Error = Box<dyn std::error::Error>;

@@ -1,10 +1,10 @@
+//! Solids of blocks: an open cube and a window.
+
 use glamx::DVec3;
 
-use crate::Mesh;
+use crate::mesh::Mesh;
 
-/// The twelve edges of a cube of 1 m as square bars of `bar` metres, between which it is open.
-///
-/// From 0.01 to 0.4 m.
+/// The twelve edges of an open cube of 1 m, as square bars of `bar` metres, from 0.01 to 0.4.
 pub fn frame(bar: f64) -> Mesh {
     let planes = planes(bar);
     blocks([planes; 3], |cell| {
@@ -12,14 +12,12 @@ pub fn frame(bar: f64) -> Mesh {
     })
 }
 
-/// A wall of 1 m in x and y, `thickness` metres thick in z, with a square window of 0.5 m in its
-/// middle.
-///
-/// From 0.001 to 1 m.
+/// A wall of 1 m in x and y and `thickness` metres in z, from 0.001 to 1, with a square window of
+/// 0.5 m in its middle.
 pub fn window(thickness: f64) -> Mesh {
     let half = 0.5 * thickness.clamp(0.001, 1.0);
     let sides = [-0.5, -0.25, 0.25, 0.5];
-    // The wall in the middle of three layers, of which the others are empty.
+    // The wall is the middle one of three layers. The others are empty.
     let across = [-2.0, -half, half, 2.0];
     blocks([sides, sides, across], |[x, y, z]| {
         z == 1 && (x != 1 || y != 1)
@@ -31,13 +29,13 @@ fn planes(bar: f64) -> [f64; 4] {
     [-0.5, -inner, inner, 0.5]
 }
 
-/// The surface of those of 3 x 3 x 3 blocks between planes that are solid.
+/// The surface of the solid ones among 3 x 3 x 3 blocks between planes.
 fn blocks(planes: [[f64; 4]; 3], is_solid: impl Fn([usize; 3]) -> bool) -> Mesh {
     let solid = |cell: [i32; 3]| {
         let is_there = cell.iter().all(|c| (0..3).contains(c));
         is_there && is_solid(cell.map(|c| c as usize))
     };
-    // All corners of blocks are numbered, x first; those used are kept.
+    // Numbers of the corners of blocks, x first, once used.
     let mut number = [u32::MAX; 64];
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     let mut vertex = |corner: [i32; 3]| {
@@ -87,7 +85,7 @@ mod tests {
     fn frames_and_windows_are_closed_and_have_their_volume() {
         for bar in [0.05, 0.2] {
             let mesh = frame(bar);
-            // Twelve bars between the corners, and the eight corners.
+            // Twelve bars between the corners, and eight corners.
             let volume = 12.0 * bar * bar * (1.0 - 2.0 * bar) + 8.0 * bar.powi(3);
             close(volume_of(&mesh, 5), volume, 1e-9);
         }

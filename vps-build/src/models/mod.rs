@@ -1,9 +1,8 @@
-//! Solids made by code, for tests, examples and experiments that must not depend on files.
+//! Procedural solids, for tests, examples and experiments that must not depend on files.
 //!
 //! Each is closed, faces outwards, is about a metre in size and lies around the origin. None is
 //! convex: they have a hole, a cavity, a thread, tips or strands that wind around each other.
-//! Numbers that are too small or too large are replaced by the nearest ones allowed, so that nothing
-//! here fails.
+//! Arguments out of range are clamped, so that no function fails.
 //!
 //! ```
 //! let torus = vps_build::models::torus(64);
@@ -14,18 +13,17 @@ use std::f64::consts::{PI, TAU};
 
 use glamx::{DVec2, DVec3};
 
-use crate::Mesh;
-
 mod frames;
 mod parts;
 mod screw;
+mod sweep;
 
 pub use frames::{frame, window};
 pub use parts::{link, peg};
 pub use screw::{Thread, bolt, nut};
 
-/// The fewest and the most segments around an axis or along a rod.
-const SEGMENTS: (u32, u32) = (8, 1024);
+use self::sweep::{at_angle, revolved, segments, swept, turn};
+use crate::mesh::Mesh;
 
 /// A ring around the z axis, 1 m wide and 0.3 m thick; its hole is 0.4 m wide.
 ///
@@ -54,7 +52,7 @@ pub fn trefoil_knot(detail: u32) -> Mesh {
     swept(along, around, |i, j| {
         let t = turn(i, along);
         let frame = KnotFrame::at(t);
-        // The torus's normal turns about the knot two and a half times on the whole way. Three
+        // The torus's normal turns about the knot two and a half times along the whole knot. Three
         // turns back leave little twist, and a whole number of turns closes the tube exactly.
         let (sin, cos) = (turn(j, around) - 3.0 * t).sin_cos();
         frame.origin + TUBE * (cos * frame.normal + sin * frame.binormal)
@@ -70,7 +68,7 @@ pub fn gear(teeth: u32) -> Mesh {
     const ROOT: f64 = 0.38;
     const TIP: f64 = 0.5;
     const HALF_THICKNESS: f64 = 0.1;
-    /// Where in a pitch the outline has corners, and how far from the axis.
+    /// Corners of the outline: the fraction of a pitch, and the distance from the axis.
     const OUTLINE: [(f64, f64); 6] = [
         (0.0, ROOT),
         (0.1, TIP),
@@ -111,7 +109,7 @@ pub fn cup(detail: u32) -> Mesh {
     revolved(&profile, segments)
 }
 
-/// Half of a section through the cup, as distances from the axis and heights in metres.
+/// The half section of the cup: distances from the axis and heights in metres.
 const CUP: [DVec2; 6] = [
     DVec2::new(0.0, -0.5),
     DVec2::new(0.3, -0.5),
@@ -121,17 +119,18 @@ const CUP: [DVec2; 6] = [
     DVec2::new(0.0, -0.42),
 ];
 
-/// A ball of 0.3 m radius with cones on it, whose tips are 0.5 m from the origin and spread evenly.
+/// A ball of 0.3 m radius with evenly distributed cones on it, whose tips are 0.5 m from the
+/// origin.
 ///
-/// From 4 to 512 `spikes`; the more there are, the narrower they are and the more triangles the
-/// ball has: from 5120 to 81 920.
+/// From 4 to 512 `spikes`. More spikes are narrower and need more triangles: from 5120 to 81 920.
 pub fn spiky_ball(spikes: u32) -> Mesh {
     const BALL: f64 = 0.3;
     const TIP: f64 = 0.5;
     let tips = spread_directions(spikes.clamp(4, 512));
-    // In radians from the axis of a cone to its foot: neighbours are 3.09 / √n apart or more.
+    // Angle in radians from the axis of a cone to its foot. Neighbours are at least 3.09 / √n
+    // apart.
     let foot = (1.4 / (tips.len() as f64).sqrt()).min(0.35);
-    // Edges of the ball are at most 1.3 / 2^subdivisions long; three or more fit between tip and
+    // Edges of the ball are at most 1.3 / 2^subdivisions long. At least three fit between tip and
     // foot.
     let subdivisions = (3.0 * 1.3 / foot).log2().ceil() as u32;
     let ball = Mesh::icosphere(1.0, subdivisions).expect("the radius is 1");
@@ -147,7 +146,7 @@ pub fn spiky_ball(spikes: u32) -> Mesh {
     };
     let mut vertices: Vec<_> = directions.iter().map(raised).collect();
     for tip in &tips {
-        // The closest vertex becomes the tip: it stays within the triangles around it.
+        // The closest vertex becomes the tip. It stays within the triangles around it.
         let (closest, _) = directions
             .iter()
             .enumerate()
@@ -158,7 +157,7 @@ pub fn spiky_ball(spikes: u32) -> Mesh {
     Mesh::new(&vertices, ball.triangles()).expect("a ball's vertices were moved, none beyond 0.5 m")
 }
 
-/// `count` unit vectors spread evenly: a Fibonacci lattice around the z axis.
+/// `count` evenly distributed unit vectors: a Fibonacci lattice around the z axis.
 fn spread_directions(count: u32) -> Vec<DVec3> {
     let golden_angle = PI * (3.0 - 5.0_f64.sqrt());
     let direction = |i: u32| {
@@ -171,17 +170,17 @@ fn spread_directions(count: u32) -> Vec<DVec3> {
     (0..count).map(direction).collect()
 }
 
-/// A place on the trefoil knot and two unit vectors across it. The knot winds three times around
-/// the tube of a torus while it goes twice around the z axis.
+/// A point of the trefoil knot, and two unit vectors normal to it. The knot winds three times
+/// around the tube of a torus, and twice around the z axis.
 struct KnotFrame {
     origin: DVec3,
-    /// Of the torus, outwards.
+    /// Outward normal of the torus.
     normal: DVec3,
     binormal: DVec3,
 }
 
 impl KnotFrame {
-    /// Metres from the axis to the middle of the torus's tube.
+    /// Metres from the axis to the centre of the torus's tube.
     const RING: f64 = 2.0 / 7.0;
     /// Radius of the torus's tube in metres.
     const TUBE: f64 = 1.0 / 7.0;
@@ -204,58 +203,14 @@ impl KnotFrame {
     }
 }
 
-/// A detail within what is allowed.
-fn segments(detail: u32) -> usize {
-    detail.clamp(SEGMENTS.0, SEGMENTS.1) as usize
-}
-
-/// The angle of step `i` when `count` steps are a full turn.
-fn turn(i: usize, count: usize) -> f64 {
-    TAU * i as f64 / count as f64
-}
-
-/// What is `x` from the z axis at the height `y`, turned by `angle` from the x axis to the y axis.
-fn at_angle(DVec2 { x, y }: DVec2, angle: f64) -> DVec3 {
-    let (sin, cos) = angle.sin_cos();
-    DVec3::new(x * cos, x * sin, y)
-}
-
-/// The solid that a closed `profile` of distances from the z axis and heights, counter-clockwise,
-/// makes in `segments` steps around the axis. A piece of the profile on the axis makes no face.
-fn revolved(profile: &[DVec2], segments: usize) -> Mesh {
-    swept(segments, profile.len(), |i, j| {
-        at_angle(profile[j], turn(i, segments))
-    })
-}
-
-/// `rings` loops of `around` points each, every loop joined to the next and the last to the first.
-/// Loops turn clockwise for one towards whom they come.
-fn swept(rings: usize, around: usize, point: impl Fn(usize, usize) -> DVec3) -> Mesh {
-    let mut vertices = Vec::with_capacity(rings * around);
-    let mut triangles = Vec::with_capacity(2 * rings * around);
-    for i in 0..rings {
-        for j in 0..around {
-            vertices.push(point(i, j));
-            let (next_i, next_j) = ((i + 1) % rings, (j + 1) % around);
-            let [a, b, c, d] = [(i, j), (next_i, j), (next_i, next_j), (i, next_j)]
-                .map(|(i, j)| (i * around + j) as u32);
-            triangles.extend([[a, b, c], [a, c, d]]);
-        }
-    }
-    triangles.retain(|corners| {
-        let [a, b, c] = corners.map(|v| vertices[v as usize]);
-        a != b && b != c && c != a
-    });
-    Mesh::new(&vertices, &triangles).expect("loops of finite points enclose a solid")
-}
-
 #[cfg(test)]
 mod tests {
+    use super::sweep::SEGMENTS;
     use super::*;
-    use crate::Health;
-    use crate::triangle::signed_volume;
+    use crate::inspection::health::Health;
+    use crate::mesh::triangle::signed_volume;
 
-    /// Volume in m³ of a mesh that is a solid of about a metre with this many handles.
+    /// Volume in m³ of a mesh that must be a solid of about a metre with this many handles.
     pub(super) fn volume_of(mesh: &Mesh, handles: i64) -> f64 {
         let health = Health::of(mesh, 0.1);
         assert!(health.is_watertight(), "{health:?}");
@@ -270,7 +225,7 @@ mod tests {
         health.volume_m3
     }
 
-    /// Whether an edge passes through a triangle that it shares no vertex with.
+    /// Whether an edge passes through a triangle with which it shares no vertex.
     pub(super) fn cuts_itself(mesh: &Mesh) -> bool {
         let passes = |p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]| {
             let above = |p| signed_volume([a, b, c], p);
@@ -296,7 +251,7 @@ mod tests {
         })
     }
 
-    /// What `n` chords around an axis leave of a turn, and of a circle's area.
+    /// Ratio of the area of a regular `n`-gon to that of its circumscribed circle.
     pub(super) fn share_of_chords(n: usize) -> f64 {
         turn(1, n).sin() / turn(1, n)
     }
@@ -330,8 +285,10 @@ mod tests {
             let around = (detail as usize / 4).max(6);
             assert_eq!(mesh.triangles().len(), 6 * detail as usize * around);
             assert!(!cuts_itself(&mesh));
-            let place = |i| KnotFrame::at(turn(i, 4096)).origin;
-            let length: f64 = (0..4096).map(|i| place(i).distance(place(i + 1))).sum();
+            let position_at = |i| KnotFrame::at(turn(i, 4096)).origin;
+            let length: f64 = (0..4096)
+                .map(|i| position_at(i).distance(position_at(i + 1)))
+                .sum();
             let tube = length * PI / 196.0 * share_of_chords(around);
             close(volume_of(&mesh, 1), tube, tolerance);
         }

@@ -1,11 +1,13 @@
+//! A peg and a chain link, for insertion and linking.
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glamx::{DVec2, DVec3};
 
-use super::{revolved, segments, swept, turn};
-use crate::Mesh;
+use super::sweep::{revolved, segments, swept, turn};
+use crate::mesh::Mesh;
 
-/// Half of a section through the peg, as distances from the axis and heights in metres.
+/// The half section of the peg: distances from the axis and heights in metres.
 const PEG: [DVec2; 6] = [
     DVec2::new(0.0, -0.5),
     DVec2::new(0.4, -0.5),
@@ -15,8 +17,8 @@ const PEG: [DVec2; 6] = [
     DVec2::new(0.0, 0.5),
 ];
 
-/// A peg along the z axis, pointing to +z: 1 m high with its foot, 0.2 m thick, the last 0.15 m a
-/// cone. The foot is a disc 0.8 m wide and 0.05 m thick.
+/// A peg along the z axis, pointing to +z. It is 1 m high with its foot and 0.2 m thick; the last
+/// 0.15 m are a cone. The foot is a disc 0.8 m wide and 0.05 m thick.
 ///
 /// It has `detail` segments around the axis. From 8 to 1024.
 pub fn peg(detail: u32) -> Mesh {
@@ -25,13 +27,14 @@ pub fn peg(detail: u32) -> Mesh {
 
 /// Metres from the middle of a link to the centres of its bows.
 const LINK_HALF_STRAIGHT: f64 = 0.25;
-/// Radius of the bows in metres, of the middle of the rod.
+/// Radius of the bows in metres, to the centre line of the rod.
 const LINK_BOW: f64 = 0.18;
 /// Radius of the rod in metres.
 const LINK_ROD: f64 = 0.07;
 
-/// A link of a chain in the xy plane: a round rod of 0.14 m bent to a closed link 1 m long (in x)
-/// and 0.5 m wide. Its opening is 0.72 m long and 0.22 m wide, so that another link's rod has room.
+/// A link of a chain in the xy plane: a round rod of 0.14 m, bent to a closed link 1 m long (in x)
+/// and 0.5 m wide. Its opening is 0.72 m long and 0.22 m wide, which leaves room for the rod of
+/// another link.
 ///
 /// It has `detail` segments along the link's two bows and half as many around the rod. From 8 to
 /// 1024.

@@ -1,17 +1,19 @@
+//! Screw threads: bolts and nuts.
+
 use std::f64::consts::{PI, TAU};
 
 use glamx::DVec2;
 
-use super::{at_angle, segments, swept, turn};
-use crate::Mesh;
+use super::sweep::{at_angle, segments, swept, turn};
+use crate::mesh::Mesh;
 
-/// A round, right-handed thread around the z axis: its radius goes up and down like a cosine, and
-/// what follows it counter-clockwise seen from +z rises by the pitch a turn.
+/// A round, right-handed thread around the z axis. Its radius varies like a cosine, and rises by
+/// the pitch per counter-clockwise turn seen from +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thread {
     /// Metres from the axis to the middle between root and crest; from 0.05 to 0.3.
     pub radius: f64,
-    /// Metres along the axis a turn; from 0.02 to 1.
+    /// Metres along the axis per turn; from 0.02 to 1.
     pub pitch: f64,
     /// Metres from root to crest; from 0 to the radius.
     pub depth: f64,
@@ -43,15 +45,15 @@ impl Thread {
         self.radius + 0.5 * self.depth * (TAU * z / self.pitch - angle).cos()
     }
 
-    /// Heights from `-height / 2` to `height / 2` with `a_turn` steps a pitch, at most 4096.
+    /// Heights from `-height / 2` to `height / 2` with `a_turn` steps per pitch, at most 4096.
     fn heights(&self, height: f64, a_turn: usize) -> Vec<f64> {
         let steps = (height / self.pitch * a_turn as f64).ceil().min(4096.0);
-        let place = |k| height * (f64::from(k) / steps - 0.5);
-        (0..=steps as u32).map(place).collect()
+        let height_at = |k| height * (f64::from(k) / steps - 0.5);
+        (0..=steps as u32).map(height_at).collect()
     }
 }
 
-/// A rod around the z axis, threaded over its whole length and cut off flat.
+/// A rod around the z axis, threaded over its whole length, with flat ends.
 ///
 /// The length is in metres, from 0.02 to 1. It has `detail` segments around the axis and half as
 /// many along a turn of the thread. From 8 to 1024.
@@ -71,8 +73,8 @@ pub fn bolt(thread: Thread, length: f64, detail: u32) -> Mesh {
     })
 }
 
-/// A hexagonal nut around the z axis, 3.6 radii of the thread over its flats, that fits on
-/// [`bolt`] as it is, without being turned or moved along the axis.
+/// A hexagonal nut around the z axis, 3.6 radii of the thread across its flats. It fits on [`bolt`]
+/// without being turned or moved along the axis.
 ///
 /// Its thread is `clearance` further from the axis, in metres, from 0 to half of the thread's
 /// radius. The height is in metres, from 0.02 to 1. It has `detail` segments around the axis,
@@ -100,7 +102,7 @@ pub fn nut(thread: Thread, height: f64, clearance: f64, detail: u32) -> Mesh {
     })
 }
 
-/// The number nearest to `value` from `low` to `high`; `low` for NaN.
+/// `value`, clamped; `low` for NaN.
 fn within(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high)
 }
@@ -110,7 +112,7 @@ mod tests {
     use super::*;
     use crate::models::tests::{close, cuts_itself, share_of_chords, volume_of};
 
-    /// The mean of the squared radius of a thread: that of a cosine's is a half.
+    /// The mean squared radius of a thread: the mean of a squared cosine is a half.
     fn mean_square(thread: Thread, clearance: f64) -> f64 {
         (thread.radius + clearance).powi(2) + thread.depth.powi(2) / 8.0
     }
@@ -130,7 +132,7 @@ mod tests {
     #[test]
     fn a_nut_is_a_hexagon_without_a_bolt() {
         for (detail, tolerance) in [(18, 0.03), (96, 2e-3)] {
-            // As wide as the numbers allow, so that it is about a metre.
+            // Scaled to about a metre, within the limits.
             let thread = Thread {
                 radius: 0.24,
                 ..Thread::default()

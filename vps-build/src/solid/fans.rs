@@ -1,35 +1,35 @@
-//! The vertices of a surface, each divided among the bodies that meet there.
+//! The vertices of a surface, split between the bodies that meet there.
 //!
-//! Where two bodies touch, their vertices and edges are the same, and more than two triangles meet
-//! at an edge. Those that bound one body there are neighbours; triangles that follow each other by
-//! neighbours around a vertex are a fan.
+//! Where two bodies touch, they share vertices and edges, and more than two triangles meet at an
+//! edge. Triangles that bound the same body there are neighbours. A fan is a set of triangles
+//! around a vertex connected through neighbours.
 
 use std::f64::consts::TAU;
 
 use glamx::DVec3;
 
-use super::self_contact::lie_on_each_other;
-use crate::Mesh;
-use crate::edges::{Edge, Edges};
-use crate::health::UnionFind;
+use super::self_contact::are_coincident;
+use crate::mesh::Mesh;
+use crate::mesh::edges::{Edge, Edges};
+use crate::mesh::union_find::UnionFind;
 
 /// The fans of a surface.
 pub(super) struct Fans {
-    /// The fan that each triangle is part of at each of its corners.
+    /// The fan of each triangle at each of its corners.
     pub(super) of_triangles: Vec<[u32; 3]>,
     /// The vertex of each fan.
     pub(super) vertices: Vec<u32>,
-    /// Whether it is clear which triangles are neighbours: not where some that face the same way lie on
-    /// each other at a common edge.
-    pub(super) are_clear: bool,
+    /// Whether neighbours are unambiguous: no triangles of the same orientation coincide at a
+    /// common edge.
+    pub(super) are_unambiguous: bool,
 }
 
-/// Triangles at an edge beyond which all of them stay together.
+/// Number of triangles at an edge beyond which all are joined.
 const MOST_AT_EDGE: usize = 64;
 
 impl Fans {
-    /// Of a closed surface. Triangles that lie on each other to within `gap` metres, face to face, are
-    /// no neighbours if others are left.
+    /// The fans of a closed surface. Triangles that coincide face to face, to within `gap` metres,
+    /// are joined only to each other if no others are left.
     pub(super) fn of(surface: &Mesh, gap: f64) -> Self {
         let triangles = surface.triangles();
         let mut corners = UnionFind::new(3 * triangles.len());
@@ -44,13 +44,13 @@ impl Fans {
                 corners.join(corner(a, vertex), corner(b, vertex));
             }
         };
-        let mut are_clear = true;
+        let mut are_unambiguous = true;
         for uses in Edges::of(triangles).groups() {
             if uses.len() <= 2 || uses.len() > MOST_AT_EDGE {
                 uses.windows(2).for_each(|pair| join(&pair[0], &pair[1]));
                 continue;
             }
-            are_clear &= !some_are_double(surface, uses, gap);
+            are_unambiguous &= !some_are_double(surface, uses, gap);
             for (a, b) in neighbours(surface, uses, gap) {
                 join(a, b);
             }
@@ -58,7 +58,7 @@ impl Fans {
         let mut fans = Self {
             of_triangles: vec![[0; 3]; triangles.len()],
             vertices: Vec::new(),
-            are_clear,
+            are_unambiguous,
         };
         let mut numbers = vec![u32::MAX; 3 * triangles.len()];
         for (t, triangle) in triangles.iter().enumerate() {
@@ -75,17 +75,17 @@ impl Fans {
     }
 }
 
-/// Whether two triangles that run along an edge in the same direction lie on each other.
+/// Whether two triangles with the same direction along an edge coincide.
 fn some_are_double(surface: &Mesh, uses: &[Edge], gap: f64) -> bool {
     let is_double = |a: &Edge, b: &Edge| {
-        a.forward == b.forward && lie_on_each_other(surface, a.triangle, b.triangle, gap)
+        a.forward == b.forward && are_coincident(surface, a.triangle, b.triangle, gap)
     };
     let mut pairs = (0..uses.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
     pairs.any(|(i, j)| is_double(&uses[i], &uses[j]))
 }
 
-/// Which triangles at an edge bound the same body there: of those that run along it in opposite
-/// directions the ones with the smallest angle between them, through the solid.
+/// Pairs of triangles at an edge that bound the same body: of opposite direction along it, with the
+/// smallest angle through the solid.
 fn neighbours<'e>(surface: &Mesh, uses: &'e [Edge], gap: f64) -> Vec<(&'e Edge, &'e Edge)> {
     let (low, high) = uses[0].between;
     let [from, to] = [low, high].map(|v| surface.vertices()[v as usize]);
@@ -97,7 +97,7 @@ fn neighbours<'e>(surface: &Mesh, uses: &'e [Edge], gap: f64) -> Vec<(&'e Edge, 
         to_opposite - along * to_opposite.dot(along)
     };
     let angle = |forward: &Edge, backward: &Edge| {
-        if lie_on_each_other(surface, forward.triangle, backward.triangle, gap) {
+        if are_coincident(surface, forward.triangle, backward.triangle, gap) {
             return TAU;
         }
         let (u, v) = (across(forward), across(backward));
@@ -129,7 +129,7 @@ fn neighbours<'e>(surface: &Mesh, uses: &'e [Edge], gap: f64) -> Vec<(&'e Edge, 
 mod tests {
     use super::*;
 
-    /// Two boxes that share a face, its two sides cut along different diagonals: each keeps its own
+    /// Two boxes that share a face, cut along different diagonals on its two sides. Each keeps its
     /// eight corners.
     #[test]
     fn boxes_that_share_a_face_keep_their_corners() {
@@ -141,7 +141,7 @@ mod tests {
         let second = box_.triangles().iter().map(|t| t.map(|v| v + 8));
         let triangles: Vec<_> = box_.triangles().iter().copied().chain(second).collect();
         let both = Mesh::new(&vertices, &triangles).unwrap();
-        // Whatever rounding welds, fans are those of two boxes.
+        // Whatever rounding welds, the fans are those of two boxes.
         let fans = Fans::of(&both, 1e-4);
         assert_eq!(
             fans.vertices.len(),

@@ -1,4 +1,4 @@
-//! Closing holes and cracks of a surface.
+//! Closing holes and cracks of a surface by ear clipping.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -6,35 +6,35 @@ use std::collections::BinaryHeap;
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
 
-use crate::edges::Edges;
-use crate::triangle::normal;
+use crate::mesh::edges::Edges;
+use crate::mesh::triangle::normal;
 
-/// Triangles that close all holes of a surface, and how many holes there are.
+/// Triangles that close all holes of a surface, and the number of holes.
 ///
-/// A rim is closed by ears, the sharpest corner first. A crack, whose rim runs along one side and
-/// back along the other, is sharpest at its ends and so is zipped up; a wide hole is covered from
-/// its rim inwards. No vertex is added.
+/// A boundary loop is closed by ears, the sharpest corner first. A crack runs along one side and
+/// back along the other, so its ends are sharpest and it is zipped up. A wide hole is covered from
+/// its boundary inwards. No vertex is added.
 pub(super) fn fill(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 3]>) {
-    let rims = rims(vertices, triangles);
-    let count = rims.len();
+    let boundary_loops = boundary_loops(vertices, triangles);
+    let count = boundary_loops.len();
     let mut filling = Vec::new();
-    for rim in rims {
+    for rim in boundary_loops {
         rim.close(&mut filling);
     }
     (count, filling)
 }
 
-/// An edge of a rim, against the direction in which the surface runs along it.
+/// An edge of a boundary loop, opposite to its direction in the surface.
 #[derive(Clone, Copy)]
-struct RimEdge {
+struct BoundaryEdge {
     from: u32,
     to: u32,
-    /// Unit normal of the surface there.
+    /// Unit normal of the adjacent triangle.
     normal: DVec3,
 }
 
-/// The edges that are used more often one way than the other.
-fn rim_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<RimEdge> {
+/// Edges that are used more often in one direction than in the other.
+fn boundary_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<BoundaryEdge> {
     let mut open = Vec::new();
     for uses in Edges::of(triangles).groups() {
         let excess = Edges::excess(uses);
@@ -44,38 +44,38 @@ fn rim_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<RimEdge> {
         for edge in unmatched.take(excess.unsigned_abs() as usize) {
             let corners = triangles[edge.triangle as usize];
             let normal = normal(corners.map(|v| vertices[v as usize]));
-            open.push(RimEdge { from, to, normal });
+            open.push(BoundaryEdge { from, to, normal });
         }
     }
     open
 }
 
-/// The rims of all holes. Where several edges leave a vertex, a rim goes on along the one at the
-/// sharpest corner, so that what is between the two is part of the hole.
-fn rims<'v>(vertices: &'v [DVec3], triangles: &[[u32; 3]]) -> Vec<Rim<'v>> {
-    let open = rim_edges(vertices, triangles);
+/// The boundary loops of all holes. Where several edges leave a vertex, a loop follows the one at
+/// the sharpest corner, so that the area between the two belongs to the hole.
+fn boundary_loops<'v>(vertices: &'v [DVec3], triangles: &[[u32; 3]]) -> Vec<BoundaryLoop<'v>> {
+    let open = boundary_edges(vertices, triangles);
     let mut leaving: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
     for (i, edge) in open.iter().enumerate() {
         leaving.entry(edge.from).or_default().push(i);
     }
-    let place = |v: u32| vertices[v as usize];
-    let corner = |into: &RimEdge, out: &RimEdge| {
+    let position = |v: u32| vertices[v as usize];
+    let corner = |into: &BoundaryEdge, out: &BoundaryEdge| {
         let up = into.normal + out.normal;
-        hole_angle(place(into.from), place(into.to), place(out.to), up)
+        interior_angle(position(into.from), position(into.to), position(out.to), up)
     };
     let mut is_used = vec![false; open.len()];
-    let mut rims = Vec::new();
+    let mut boundary_loops = Vec::new();
     for first in 0..open.len() {
         if is_used[first] {
             continue;
         }
         let mut path = vec![open[first]];
         is_used[first] = true;
-        // What bounds triangles has no end: each vertex is left as often as it is reached.
+        // A boundary is closed: each vertex is left as often as it is reached.
         loop {
             let last = path[path.len() - 1];
-            let ways = leaving.get(&last.to).into_iter().flatten().copied();
-            let free = ways.filter(|&i| i == first || !is_used[i]);
+            let leaving_here = leaving.get(&last.to).into_iter().flatten().copied();
+            let free = leaving_here.filter(|&i| i == first || !is_used[i]);
             let next =
                 free.min_by(|&a, &b| corner(&last, &open[a]).total_cmp(&corner(&last, &open[b])));
             match next {
@@ -86,28 +86,28 @@ fn rims<'v>(vertices: &'v [DVec3], triangles: &[[u32; 3]]) -> Vec<Rim<'v>> {
                 _ => break,
             }
         }
-        rims.push(Rim::new(vertices, &path));
+        boundary_loops.push(BoundaryLoop::new(vertices, &path));
     }
-    rims
+    boundary_loops
 }
 
-/// The rim of one hole while it is closed.
-struct Rim<'v> {
-    places: &'v [DVec3],
+/// The boundary loop of one hole, during ear clipping.
+struct BoundaryLoop<'v> {
+    positions: &'v [DVec3],
     vertices: Vec<u32>,
     /// Unit normals of the surface along the edge from each corner to the next.
     normals: Vec<DVec3>,
     next: Vec<usize>,
     previous: Vec<usize>,
-    /// How often the corner changed.
+    /// Version of each corner, to skip stale heap entries.
     version: Vec<u32>,
 }
 
-impl<'v> Rim<'v> {
-    fn new(places: &'v [DVec3], edges: &[RimEdge]) -> Self {
+impl<'v> BoundaryLoop<'v> {
+    fn new(positions: &'v [DVec3], edges: &[BoundaryEdge]) -> Self {
         let count = edges.len();
         Self {
-            places,
+            positions,
             vertices: edges.iter().map(|e| e.from).collect(),
             normals: edges.iter().map(|e| e.normal).collect(),
             next: (0..count).map(|i| (i + 1) % count).collect(),
@@ -118,7 +118,7 @@ impl<'v> Rim<'v> {
 
     fn close(mut self, filling: &mut Vec<[u32; 3]>) {
         let mut left = self.vertices.len();
-        // Angles of at least 0 are in the order of their bits.
+        // Non-negative floats order as their bits.
         let entry = |rim: &Self, i: usize| Reverse((rim.angle(i).to_bits(), i, rim.version[i]));
         let mut corners: BinaryHeap<_> = (0..left).map(|i| entry(&self, i)).collect();
         while left >= 3 {
@@ -131,7 +131,7 @@ impl<'v> Rim<'v> {
             let (before, after) = (self.previous[i], self.next[i]);
             let ear = [before, i, after].map(|c| self.vertices[c]);
             left -= 1;
-            // There and back along one edge.
+            // The two edges cancel.
             if ear[0] == ear[2] {
                 let behind = self.next[after];
                 self.version[i] += 1;
@@ -150,7 +150,7 @@ impl<'v> Rim<'v> {
             if left < 3 {
                 break;
             }
-            let across = normal(ear.map(|v| self.places[v as usize]));
+            let across = normal(ear.map(|v| self.positions[v as usize]));
             if across != DVec3::ZERO {
                 self.normals[before] = across;
             }
@@ -165,22 +165,22 @@ impl<'v> Rim<'v> {
     }
 
     fn angle(&self, corner: usize) -> f64 {
-        let place = |i: usize| self.places[self.vertices[i] as usize];
+        let position = |i: usize| self.positions[self.vertices[i] as usize];
         let (previous, next) = (self.previous[corner], self.next[corner]);
         let up = self.normals[previous] + self.normals[corner];
-        hole_angle(place(previous), place(corner), place(next), up)
+        interior_angle(position(previous), position(corner), position(next), up)
     }
 }
 
-/// The angle of a hole at a corner, from 0 to 2 π, seen from where the surface faces.
-fn hole_angle(previous: DVec3, corner: DVec3, next: DVec3, up: DVec3) -> f64 {
+/// The interior angle of a hole at a corner, from 0 to 2 π, seen from the front.
+fn interior_angle(previous: DVec3, corner: DVec3, next: DVec3, up: DVec3) -> f64 {
     let (to_previous, to_next) = (previous - corner, next - corner);
     let (cross, dot) = (to_next.cross(to_previous), to_next.dot(to_previous));
     let angle = cross.length().copysign(up.dot(cross)).atan2(dot);
     if angle < 0.0 {
         angle + std::f64::consts::TAU
     } else {
-        // Never the negative zero, whose bits are large.
+        // Adding 0 avoids -0, whose bits are large.
         angle + 0.0
     }
 }
@@ -188,8 +188,8 @@ fn hole_angle(previous: DVec3, corner: DVec3, next: DVec3, up: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Mesh;
-    use crate::triangle::{area, signed_volume};
+    use crate::mesh::Mesh;
+    use crate::mesh::triangle::{area, signed_volume};
 
     fn closed_volume(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (usize, f64) {
         let (holes, filling) = fill(vertices, triangles);
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn missing_faces_of_a_box_are_put_back() {
         let mesh = Mesh::cuboid([1.0, 2.0, 3.0]).unwrap();
-        // One face, and two that meet at a corner only with the rest.
+        // One face, and two that only meet at a corner.
         for gone in [vec![0, 1], vec![0, 1, 2, 3], vec![4], vec![4, 7]] {
             let left = (0..12).filter(|t| !gone.contains(t));
             let left: Vec<_> = left.map(|t| mesh.triangles()[t]).collect();
@@ -213,7 +213,7 @@ mod tests {
         }
     }
 
-    /// A notched hole in a plane is covered exactly, whatever corner the rim begins at.
+    /// A notched hole in a plane is covered exactly, from any first corner.
     #[test]
     fn a_concave_hole_in_a_plane_keeps_the_volume() {
         let outline = [
@@ -232,7 +232,7 @@ mod tests {
             .flat_map(|&z| outline.iter().map(move |&[x, y]| DVec3::new(x, y, z)))
             .collect();
         vertices.push(DVec3::new(2.0, 0.5, 0.0));
-        // The bottom is a cone to a point that sees all corners, the top is missing.
+        // The bottom is a cone to a point that sees all corners. The top is missing.
         let mut triangles = Vec::new();
         for i in 0..n {
             let j = (i + 1) % n;
@@ -243,8 +243,8 @@ mod tests {
         assert!((volume - 16.0).abs() < 1e-12, "{volume}");
     }
 
-    /// A ball cut along its equator, the upper half lifted by a hair but for one shared vertex: the
-    /// crack is zipped up, and nothing leads inside.
+    /// A ball cut along its equator, its upper half lifted slightly except for one shared vertex.
+    /// The crack is zipped up, and no filling leads inside.
     #[test]
     fn a_crack_is_zipped_up() {
         let ball = Mesh::icosphere(1.0, 4).unwrap();

@@ -1,93 +1,28 @@
-//! Which way the triangles of a surface face.
+//! Consistent orientation of a surface: by neighbours, or by a fill from outside.
 
 use std::borrow::Cow;
 
+use glamx::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use vps_core::Grid;
 
-use super::fans::Fans;
 use super::holes;
-use super::self_contact::gap;
-use crate::Mesh;
-use crate::edges::Edges;
-use crate::health::UnionFind;
-use crate::triangle::{area, middle, signed_volume};
-use crate::winding::Lines;
+use super::self_contact::gap_tolerance;
+use super::voxelize::{VoxelClass, VoxelClasses};
+use super::winding::ScanlineIndex;
+use crate::mesh::Mesh;
+use crate::mesh::edges::Edges;
+use crate::mesh::triangle::{area, middle, normal, signed_volume};
 
-/// The bodies that a closed surface bounds.
-pub(super) struct Parts {
-    part_of: Vec<u32>,
-    volumes: Vec<f64>,
-    /// The largest triangle of each.
-    largest: Vec<u32>,
-    are_clear: bool,
-}
-
-impl Parts {
-    pub(super) fn of(mesh: &Mesh) -> Self {
-        let fans = Fans::of(mesh, gap(mesh));
-        let mut roots = UnionFind::new(fans.vertices.len());
-        for &[a, b, c] in &fans.of_triangles {
-            roots.join(a, b);
-            roots.join(b, c);
-        }
-        let (origin, _) = mesh.bounds();
-        let mut numbers = FxHashMap::default();
-        let mut parts = Self {
-            part_of: Vec::with_capacity(mesh.triangles().len()),
-            volumes: Vec::new(),
-            largest: Vec::new(),
-            are_clear: fans.are_clear,
-        };
-        let mut areas = Vec::new();
-        for (t, &[fan, ..]) in fans.of_triangles.iter().enumerate() {
-            let next = parts.volumes.len() as u32;
-            let part = *numbers.entry(roots.root(fan)).or_insert(next);
-            if part == next {
-                parts.volumes.push(0.0);
-                parts.largest.push(t as u32);
-                areas.push(0.0);
-            }
-            parts.part_of.push(part);
-            let corners = mesh.corners(t);
-            parts.volumes[part as usize] += signed_volume(corners, origin);
-            let area = area(corners);
-            if area > areas[part as usize] {
-                areas[part as usize] = area;
-                parts.largest[part as usize] = t as u32;
-            }
-        }
-        parts
-    }
-
-    /// Whether each part has a positive volume, and it is clear which they are.
-    pub(super) fn face_outwards(&self) -> bool {
-        self.are_clear && self.volumes.iter().all(|&volume| volume >= 0.0)
-    }
-
-    /// Whether parts that do not touch are each the boundary of the solid: with nothing around those
-    /// that face outwards, and one solid around those that face a cavity.
-    pub(super) fn are_nested(&self, mesh: &Mesh) -> bool {
-        if self.volumes.len() == 1 {
-            return self.face_outwards();
-        }
-        let lines = Lines::new(mesh);
-        (0..).zip(&self.volumes).all(|(part, &volume)| {
-            let largest = mesh.corners(self.largest[part as usize] as usize);
-            let others = |t: u32| self.part_of[t as usize] != part;
-            let around = lines.winding(middle(largest), others);
-            around == i32::from(volume < 0.0)
-        })
-    }
-}
-
-/// Turns triangles until those with a common edge agree, most of each patch stays as it was, and no
-/// patch is inside out; where one is turned, all within it are. Returns how many were turned.
-pub(super) fn turn_by_neighbours(mesh: &Mesh, triangles: &mut [[u32; 3]]) -> usize {
+/// Makes triangles with a common edge agree. Each patch keeps the orientation of most of its area.
+/// A patch that is inside out is turned with all patches within it. Returns the number of turned
+/// triangles.
+pub(super) fn orient_by_neighbours(mesh: &Mesh, triangles: &mut [[u32; 3]]) -> usize {
     let before = triangles.to_vec();
     let edges = Edges::of(triangles);
     let patches = Patches::of(triangles.len(), &edges);
-    // Positive: the area that would stay as it is.
+    // Area that keeps its orientation, less area that would turn.
     let mut majority = vec![0.0; patches.count];
     for (t, &patch) in patches.patch_of.iter().enumerate() {
         let area = area(mesh.corners(t));
@@ -108,9 +43,9 @@ pub(super) fn turn_by_neighbours(mesh: &Mesh, triangles: &mut [[u32; 3]]) -> usi
     pairs.filter(|(now, before)| now != before).count()
 }
 
-/// Which patches are inside out, each taken for a body of its own with its holes closed. A patch
-/// turns with the one around it, so a mirrored body keeps its cavities; it is inside out if it
-/// has a negative volume then and no solid around it that it could be a cavity of.
+/// Which patches are inside out. Each patch counts as a body, with its holes closed. It turns with
+/// the patch around it, so a mirrored body keeps its cavities. It is inside out if its volume is
+/// negative then and no solid around it makes it a cavity.
 fn inside_out(mesh: &Mesh, patches: &Patches, triangles: &[[u32; 3]]) -> Vec<bool> {
     let mut bodies = vec![Vec::new(); patches.count];
     for (triangle, &patch) in triangles.iter().zip(&patches.patch_of) {
@@ -122,11 +57,11 @@ fn inside_out(mesh: &Mesh, patches: &Patches, triangles: &[[u32; 3]]) -> Vec<boo
     });
     let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices()[v as usize]);
     let (low, _) = mesh.bounds();
-    let gap = gap(mesh);
+    let gap = gap_tolerance(mesh);
     let volume = |body: &Vec<[u32; 3]>| -> f64 {
         let volume: f64 = body.iter().map(|t| signed_volume(corners(t), low)).sum();
         let area: f64 = body.iter().map(|t| area(corners(t))).sum();
-        // What is no thicker than a gap has none.
+        // Thinner than a gap: no volume.
         let is_flat = 2.0 * volume.abs() <= gap * area;
         if is_flat { 0.0 } else { volume }
     };
@@ -136,16 +71,16 @@ fn inside_out(mesh: &Mesh, patches: &Patches, triangles: &[[u32; 3]]) -> Vec<boo
     }
     let owners = (0_u32..).zip(&bodies);
     let owners: Vec<u32> = owners.flat_map(|(p, b)| b.iter().map(move |_| p)).collect();
-    let lines = Lines::of(Cow::Owned(mesh.with_triangles(bodies.concat())));
-    // Which others wind around each patch, and how often, for most of its area: a part of it may lie
-    // on another.
+    let scanlines = ScanlineIndex::of(Cow::Owned(mesh.with_triangles(bodies.concat())));
+    // For each patch the other patches that wind around it, and how often. The mean over its area
+    // is rounded, since a part of it may lie on another patch.
     let around = |patch: usize| {
         let mut windings: FxHashMap<u32, f64> = FxHashMap::default();
         let mut all = 0.0;
         for triangle in bodies[patch].iter().map(corners) {
             let area = area(triangle);
             all += area;
-            lines.for_each_crossing(middle(triangle), |t, change| {
+            scanlines.for_each_crossing(middle(triangle), |t, change| {
                 *windings.entry(owners[t as usize]).or_default() += area * f64::from(change);
             });
         }
@@ -179,18 +114,18 @@ fn inside_out(mesh: &Mesh, patches: &Patches, triangles: &[[u32; 3]]) -> Vec<boo
     is_turned
 }
 
-/// Triangles that hang together by edges with two triangles.
+/// Components of triangles joined by edges with exactly two triangles.
 struct Patches {
     count: usize,
     patch_of: Vec<u32>,
-    /// Whether a triangle turns another way than the first of its patch.
+    /// Whether a triangle is oriented against the first of its patch.
     turned: Vec<bool>,
 }
 
 impl Patches {
     fn of(triangles: usize, edges: &Edges) -> Self {
         const NONE: u32 = u32::MAX;
-        // For each triangle its neighbours, and whether they agree.
+        // The neighbours of each triangle, and whether they agree.
         let mut neighbours = vec![[(NONE, true); 3]; triangles];
         for uses in edges.groups() {
             if let [a, b] = uses {
@@ -228,4 +163,37 @@ impl Patches {
         }
         patches
     }
+}
+
+/// How far from a triangle, in voxels, to look for a voxel off the surface.
+const SIDE_REACH: u32 = 3;
+
+/// Orients triangles so that the outside is in front of them, and removes those that the outside
+/// does not reach. Returns the number of turned triangles.
+pub(super) fn orient_by_fill(mesh: &Mesh, grid: &Grid, triangles: &mut Vec<[u32; 3]>) -> usize {
+    let classes = VoxelClasses::by_fill(mesh, grid);
+    let step = 0.5 * f64::from(grid.voxel_size());
+    let mut turned = 0;
+    let mut t = 0;
+    triangles.retain_mut(|triangle| {
+        let corners = mesh.corners(t);
+        t += 1;
+        let (middle, normal) = (middle(corners), normal(corners));
+        let is_outside = |direction: DVec3| {
+            let steps = 1..=2 * SIDE_REACH;
+            let mut ahead =
+                steps.map(|i| classes.of_point(middle + direction * (step * f64::from(i))));
+            ahead.find(|&class| class != VoxelClass::Surface) == Some(VoxelClass::Outside)
+        };
+        match (is_outside(normal), is_outside(-normal)) {
+            (true, _) => true,
+            (false, true) => {
+                triangle.reverse();
+                turned += 1;
+                true
+            }
+            (false, false) => false,
+        }
+    });
+    turned
 }

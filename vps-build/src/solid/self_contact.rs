@@ -1,50 +1,50 @@
-//! Where a closed surface meets itself: triangles that cross or lie on each other, and walls of air
-//! too thin to count.
+//! Self-contact of a closed surface: triangles that cross or coincide, and gaps thinner than a
+//! tolerance.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use glamx::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-use super::box_tree::BoxTree;
-use crate::Mesh;
-use crate::triangle::{distance, normal, width};
+use crate::mesh::Mesh;
+use crate::mesh::triangle::{distance, normal, width};
+use crate::spatial::box_tree::BoxTree;
 
-/// Up to what part of the diagonal of a mesh a gap is none.
-const GAP: f64 = 5e-5;
+/// Gap tolerance, relative to the diagonal of the mesh.
+const GAP_TOLERANCE: f64 = 5e-5;
 
-/// How wide a gap of a mesh is that is none, in metres.
-pub(crate) fn gap(mesh: &Mesh) -> f64 {
+/// The gap tolerance of a mesh in metres: parts closer than that touch.
+pub(crate) fn gap_tolerance(mesh: &Mesh) -> f64 {
     let (low, high) = mesh.bounds();
-    GAP * low.distance(high)
+    GAP_TOLERANCE * low.distance(high)
 }
 
-/// What parts of a surface have to do with each other.
+/// How parts of a surface touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SelfContact {
-    /// Triangles cross, or lie on each other.
+    /// Some triangles cross or coincide.
     pub(super) meets: bool,
-    /// Triangles face each other, or away from each other, a hair apart.
+    /// Some triangles face each other, or away from each other, within the gap tolerance.
     pub(super) has_gaps: bool,
 }
 
-/// Two triangles face each other if their normals are opposite to within 25 degrees.
+/// Largest cosine between the normals of opposed triangles: 25 degrees.
 const OPPOSITE: f64 = -0.9;
 
 impl SelfContact {
-    /// Looks at all pairs of triangles; those that only share corners or edges, or touch in a point
-    /// or along a line, do not meet. Gaps, or what is thinner than them, are at most `gap` metres wide.
+    /// Tests all pairs of triangles. Triangles that share only corners or edges, or touch in a
+    /// point or along a line, do not meet. Gaps, and walls as thin, are at most `gap` metres wide.
     ///
-    /// Exact but for the width of gaps.
+    /// Exact, except for the width of gaps.
     pub(super) fn of(mesh: &Mesh, gap: f64) -> Self {
         let tree = BoxTree::new(mesh, 0.5 * gap);
         let (meets, has_gaps) = (AtomicBool::new(false), AtomicBool::new(false));
         tree.for_each_pair(|a, b| {
             let known = (meets.load(Relaxed), has_gaps.load(Relaxed));
-            if !known.0 && do_meet(mesh, a, b) {
+            if !known.0 && intersect(mesh, a, b) {
                 meets.store(true, Relaxed);
             }
-            if !known.1 && do_face(mesh, a, b, gap) {
+            if !known.1 && face_across_gap(mesh, a, b, gap) {
                 has_gaps.store(true, Relaxed);
             }
             !(known.0 && known.1)
@@ -56,16 +56,16 @@ impl SelfContact {
     }
 }
 
-/// Corners of two triangles that are the same vertex, as positions in each.
+/// Vertices that two triangles share, as corner indices of each.
 fn shared(a: [u32; 3], b: [u32; 3]) -> impl Iterator<Item = (usize, usize)> {
     (0..3).flat_map(move |i| (0..3).filter_map(move |j| (a[i] == b[j]).then_some((i, j))))
 }
 
-/// Whether two triangles face each other with no more than `gap` metres between them; where they
-/// share corners or cross, all over one of them.
-fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
+/// Whether two triangles face each other within `gap` metres. If they share corners or cross, all
+/// of one of them must.
+fn face_across_gap(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
     let [p, q] = [a, b].map(|t| mesh.corners(t as usize));
-    // What is narrower than a gap faces nowhere.
+    // Slivers narrower than the gap have no reliable normal.
     let are_wide = || width(p) > gap && width(q) > gap;
     if normal(p).dot(normal(q)) > OPPOSITE || !overlap(p, q) || !are_wide() {
         return false;
@@ -74,19 +74,19 @@ fn do_face(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
     if distance > 0.0 {
         return distance <= gap;
     }
-    // They share a corner or cross: the two sides of a blade do, too, and parts far within each other.
+    // They share a corner or cross. So do the two sides of a blade, and parts deep within each
+    // other.
     let thickness = thickness_between(p, q);
     thickness > 0.0 && thickness <= gap
 }
 
-/// Whether two triangles lie on each other, to within `gap` metres.
-pub(super) fn lie_on_each_other(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
+/// Whether two triangles coincide, to within `gap` metres.
+pub(super) fn are_coincident(mesh: &Mesh, a: u32, b: u32, gap: f64) -> bool {
     let [p, q] = [a, b].map(|t| mesh.corners(t as usize));
     overlap(p, q) && thickness_between(p, q) <= gap
 }
 
-/// How far one triangle reaches away from the plane of the other, in metres: of the two ways to
-/// see it the lesser.
+/// How far one triangle reaches from the plane of the other, in metres. The lesser of the two.
 fn thickness_between(p: [DVec3; 3], q: [DVec3; 3]) -> f64 {
     let reach = |plane: [DVec3; 3], of: [DVec3; 3]| {
         let normal = normal(plane);
@@ -96,8 +96,8 @@ fn thickness_between(p: [DVec3; 3], q: [DVec3; 3]) -> f64 {
     reach(p, q).min(reach(q, p))
 }
 
-/// Whether two triangles cross, or lie on each other over some area.
-fn do_meet(mesh: &Mesh, a: u32, b: u32) -> bool {
+/// Whether two triangles cross, or overlap in a common plane.
+fn intersect(mesh: &Mesh, a: u32, b: u32) -> bool {
     let (s, t) = (mesh.triangles()[a as usize], mesh.triangles()[b as usize]);
     let (p, q) = (mesh.corners(a as usize), mesh.corners(b as usize));
     let mut common = shared(s, t);
@@ -111,7 +111,7 @@ fn do_meet(mesh: &Mesh, a: u32, b: u32) -> bool {
             let (e, f) = (opposite(p, i), opposite(q, j));
             pierces(e, q) || pierces(f, p) || f.iter().all(|&v| side(p, v) == 0.0) && overlap(p, q)
         }
-        // Signs of what is shared are known, and take the longest to tell from nothing.
+        // Signs of shared corners are zero, and the slowest to compute exactly.
         (Some((_, j)), Some((_, k))) => side(p, q[3 - j - k]) == 0.0 && overlap(p, q),
     }
 }
@@ -120,7 +120,7 @@ fn edges([a, b, c]: [DVec3; 3]) -> impl Iterator<Item = [DVec3; 2]> {
     [[a, b], [b, c], [c, a]].into_iter()
 }
 
-/// The edge across a corner.
+/// The edge opposite to a corner.
 fn opposite(t: [DVec3; 3], corner: usize) -> [DVec3; 2] {
     [t[(corner + 1) % 3], t[(corner + 2) % 3]]
 }
@@ -134,8 +134,8 @@ fn side([a, b, c]: [DVec3; 3], point: DVec3) -> f64 {
     orient3d(coord(a), coord(b), coord(c), coord(point))
 }
 
-/// Whether the inside of a segment passes through the inside of a triangle, or the middle of one of
-/// its edges, from one side to the other.
+/// Whether the interior of a segment crosses the interior of a triangle, or the interior of one of
+/// its edges.
 fn pierces([from, to]: [DVec3; 2], t: [DVec3; 3]) -> bool {
     if side(t, from) * side(t, to) >= 0.0 {
         return false;
@@ -146,7 +146,8 @@ fn pierces([from, to]: [DVec3; 2], t: [DVec3; 3]) -> bool {
     zeros <= 1 && (around.iter().all(|s| *s >= 0.0) || around.iter().all(|s| *s <= 0.0))
 }
 
-/// Whether two triangles share some area, seen along the axis that the first faces the most.
+/// Whether two triangles overlap in area, projected along the dominant axis of the first one's
+/// normal.
 fn overlap(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
     let [a, b, c] = p;
     let normal = (b - a).cross(c - a).abs();
@@ -164,7 +165,7 @@ fn overlap(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
     let (Some(p), Some(q)) = (counter_clockwise(p), counter_clockwise(q)) else {
         return false;
     };
-    // Two convex shapes share no area if an edge of one has the other on its outer side.
+    // Separating axis: an edge of one has the other on its outer side.
     let separates = |p: [Coord<f64>; 3], q: [Coord<f64>; 3]| {
         (0..3).any(|i| q.iter().all(|&v| orient2d(p[i], p[(i + 1) % 3], v) <= 0.0))
     };
@@ -191,8 +192,8 @@ mod tests {
             let found = SelfContact::of(&mesh, 1e-4);
             (found.meets, found.has_gaps)
         };
-        // Apart, with an edge or a corner in common, a hair apart, face to face in part, through
-        // each other, within.
+        // Apart, with an edge or a corner in common, a small gap apart, partly face to face, across
+        // each other, nested.
         assert_eq!(of([3.0, 0.0, 0.0], [1.0; 3]), (false, false));
         assert_eq!(of([1.0, 1.0, 0.0], [1.0; 3]), (false, false));
         assert_eq!(of([1.0, 1.0, 1.0], [1.0; 3]), (false, false));

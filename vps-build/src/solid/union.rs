@@ -1,11 +1,11 @@
-//! The boundary of the solid that a closed surface winds around at least once.
+//! The boundary of the solid with winding number one or more.
 //!
-//! Where parts of a surface overlap or touch, faces of theirs lie within the solid and are no
-//! boundary. The surface is cut along all its intersections and what has solid on both sides is left
-//! out (Zhou, Grinspun, Zorin and Jacobson 2016), by the crate `manifold-rust` in exact arithmetic.
+//! Where parts of a surface overlap or touch, some faces lie within the solid. The surface is cut
+//! along its intersections, and faces with solid on both sides are removed (Zhou, Grinspun, Zorin
+//! and Jacobson 2016). The crate `manifold-rust` does so in exact arithmetic.
 //!
-//! Parts that are a hair apart, as rounding leaves them, are joined as well: the surface is widened
-//! by half of the widest gap, and the vertices of its union are put back on the faces they come from.
+//! Parts with a rounding gap between them are joined too: the surface is offset outwards by half of
+//! the gap tolerance, and the vertices of the union are moved back to their original faces.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -15,62 +15,62 @@ use manifold_rust::types::{Error, MeshGL64, WindingRule};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::box_tree::BoxTree;
+use super::bodies::Bodies;
 use super::fans::Fans;
-use super::orientation::Parts;
-use super::self_contact::{SelfContact, gap};
-use super::{from_least, has_three_corners};
-use crate::Mesh;
-use crate::cells::Cells;
-use crate::triangle::{area, closest_point, normal};
+use super::self_contact::{SelfContact, gap_tolerance};
+use crate::mesh::Mesh;
+use crate::mesh::faces::{canonical_rotation, has_distinct_corners};
+use crate::mesh::triangle::{area, closest_point, normal};
+use crate::spatial::box_tree::BoxTree;
+use crate::spatial::spatial_hash::SpatialHash;
 
-/// The most a corner moves, in widths of what its faces move, as miters of strokes are limited.
-const MITER: f64 = 4.0;
+/// Limit of a corner's displacement, in units of its faces' offset. As for miter joins of strokes.
+const MITER_LIMIT: f64 = 4.0;
 
-/// How the parts of a surface lie to each other.
+/// Whether faces of a surface may lie within its solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layout {
     /// The surface is the boundary of its solid.
     Simple,
-    /// Faces of it may lie within the solid.
+    /// Faces may lie within the solid.
     Overlapping,
-    /// The same, and some face each other across a gap that is none.
+    /// As `Overlapping`, and some faces are closer than the gap tolerance.
     WithGaps,
 }
 
-/// How the parts of a closed surface lie to each other.
+/// The layout of a closed surface.
 pub(super) fn layout(surface: &Mesh) -> Layout {
-    let contact = SelfContact::of(surface, gap(surface));
+    let contact = SelfContact::of(surface, gap_tolerance(surface));
     if contact.has_gaps {
         Layout::WithGaps
-    } else if contact.meets || !Parts::of(surface).are_nested(surface) {
+    } else if contact.meets || !Bodies::of(surface).are_nested(surface) {
         Layout::Overlapping
     } else {
         Layout::Simple
     }
 }
 
-/// Why there is no boundary.
+/// Why present is no union.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoUnion {
-    /// The surface winds around nothing.
+    /// The solid is empty.
     Empty,
-    /// It could not be found.
+    /// The computation failed.
     Failed,
 }
 
-/// The boundary of the solid that a closed surface winds around at least once.
+/// The boundary of the solid with winding number one or more.
 pub(super) fn union(surface: &Mesh, layout: Layout) -> Result<Mesh, NoUnion> {
-    let half_gap = 0.5 * gap(surface);
+    let half_gap = 0.5 * gap_tolerance(surface);
     if layout == Layout::WithGaps {
-        let widened = widened(surface, half_gap)?;
-        return put_back(&outer_boundary(&widened)?, &widened, surface, half_gap);
+        let offset = offset_outwards(surface, half_gap)?;
+        return undo_offset(&outer_boundary(&offset)?, &offset, surface, half_gap);
     }
     outer_boundary(surface)
 }
 
 fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
-    // Around the middle, so that coordinates have digits to spare.
+    // Relative to the centre, to keep digits.
     let (low, high) = surface.bounds();
     let middle = low.midpoint(high);
     let vertices = surface.vertices().iter();
@@ -85,7 +85,7 @@ fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
             .collect(),
         ..MeshGL64::default()
     };
-    // Strangers' meshes must not end the program, whatever another's code makes of them.
+    // A panic of the crate must not end the program.
     let output = catch_unwind(AssertUnwindSafe(|| {
         let solid = Manifold::from_mesh_gl64_robust(&input).rebuild_solid(WindingRule::Positive);
         (solid.status() == Error::NoError).then(|| solid.get_mesh_gl64(-1))
@@ -103,46 +103,46 @@ fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
     let triangles: Vec<_> = triangles
         .map(|t| [t[0], t[1], t[2]].map(|v| v as u32))
         .collect();
-    let boundary = without_edges(&vertices, &triangles)?;
+    let boundary = without_collapsed(&vertices, &triangles)?;
     if boundary.open_edges() > 0 {
         return Err(NoUnion::Failed);
     }
     Ok(boundary)
 }
 
-/// A mesh without those triangles of which two corners came to one place, or all to those of another
-/// that turns the other way.
-fn without_edges(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, NoUnion> {
+/// The mesh without triangles that have two equal corners, or that cancel a triangle of the
+/// opposite orientation.
+fn without_collapsed(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, NoUnion> {
     let new = |vertices: &[DVec3], triangles: &[[u32; 3]]| {
         Mesh::new(vertices, triangles).map_err(|_| NoUnion::Failed)
     };
     let mesh = new(vertices, triangles)?;
-    let mut whole = mesh.triangles().to_vec();
-    whole.retain(has_three_corners);
-    let there: FxHashSet<_> = whole.iter().map(|&t| from_least(t)).collect();
-    whole.retain(|&[a, b, c]| !there.contains(&from_least([a, c, b])));
-    if whole.len() == mesh.triangles().len() {
+    let mut remaining = mesh.triangles().to_vec();
+    remaining.retain(has_distinct_corners);
+    let present: FxHashSet<_> = remaining.iter().map(|&t| canonical_rotation(t)).collect();
+    remaining.retain(|&[a, b, c]| !present.contains(&canonical_rotation([a, c, b])));
+    if remaining.len() == mesh.triangles().len() {
         return Ok(mesh);
     }
-    new(mesh.vertices(), &whole)
+    new(mesh.vertices(), &remaining)
 }
 
-/// Planes a vertex is to be moved to.
+/// A least-squares fit of a displacement to planes.
 #[derive(Clone, Copy)]
-struct Planes {
+struct PlaneFit {
     matrix: DMat3,
     side: DVec3,
     weight: f64,
 }
 
-impl Planes {
+impl PlaneFit {
     const NONE: Self = Self {
         matrix: DMat3::ZERO,
         side: DVec3::ZERO,
         weight: 0.0,
     };
 
-    /// A plane that lies `distance` metres along its unit normal.
+    /// Adds a plane at `distance` metres along its unit normal.
     fn add(&mut self, normal: DVec3, distance: f64, weight: f64) {
         let columns = [normal.x, normal.y, normal.z].map(|c| normal * (c * weight));
         self.matrix += DMat3::from_cols(columns[0], columns[1], columns[2]);
@@ -150,23 +150,27 @@ impl Planes {
         self.weight += weight;
     }
 
-    /// The shortest way to all of them, or to where they are closest if they do not meet.
-    fn way(&self) -> DVec3 {
-        // Along directions of no plane nothing moves.
+    /// The shortest displacement to all planes, in the least-squares sense.
+    fn displacement(&self) -> DVec3 {
+        // Damped: no displacement along directions without a plane.
         let damped = self.matrix + DMat3::from_diagonal(DVec3::splat(DAMPING * self.weight));
-        let way = damped.inverse() * self.side;
-        if way.is_finite() { way } else { DVec3::ZERO }
+        let displacement = damped.inverse() * self.side;
+        if displacement.is_finite() {
+            displacement
+        } else {
+            DVec3::ZERO
+        }
     }
 }
 
-/// What a plane weighs beside all planes of a vertex to count.
+/// Weight of the damping, relative to the weight of all planes.
 const DAMPING: f64 = 1e-9;
 
-/// The surface with each face moved outwards: each corner of a body goes where the planes of its
-/// faces do.
-fn widened(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
+/// The surface with its faces moved outwards by `by` metres. Each corner of a body moves to the
+/// offset planes of its faces.
+fn offset_outwards(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
     let fans = Fans::of(surface, 2.0 * by);
-    let mut planes = vec![Planes::NONE; fans.vertices.len()];
+    let mut planes = vec![PlaneFit::NONE; fans.vertices.len()];
     for (t, corners) in fans.of_triangles.iter().enumerate() {
         let at = surface.corners(t);
         for &fan in corners {
@@ -174,24 +178,24 @@ fn widened(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
         }
     }
     let vertices = fans.vertices.iter().zip(&planes);
-    let moved = |(&v, planes): (&u32, &Planes)| {
-        surface.vertices()[v as usize] + planes.way().clamp_length_max(MITER * by)
+    let moved = |(&v, planes): (&u32, &PlaneFit)| {
+        surface.vertices()[v as usize] + planes.displacement().clamp_length_max(MITER_LIMIT * by)
     };
     let vertices: Vec<_> = vertices.map(moved).collect();
     Mesh::new(&vertices, &fans.of_triangles).map_err(|_| NoUnion::Failed)
 }
 
-/// A boundary made of faces of a widened surface, its vertices back on the planes of the same faces of
-/// the surface.
-fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
-    // What 64 bits leave of a vertex that lies on a face.
+/// Moves the vertices of a boundary from faces of the offset surface to the same faces of the
+/// original.
+fn undo_offset(boundary: &Mesh, offset: &Mesh, surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
+    // Rounding of a vertex on a face.
     let near = 1e-5 * by;
-    let tree = BoxTree::new(widened, near);
+    let tree = BoxTree::new(offset, near);
     let moved = |&p: &DVec3| {
-        let mut planes = Planes::NONE;
+        let mut planes = PlaneFit::NONE;
         let mut corner = None;
         tree.for_each_at(p, |t| {
-            let corners = widened.corners(t as usize);
+            let corners = offset.corners(t as usize);
             if closest_point(corners, p).distance(p) > near {
                 return;
             }
@@ -204,22 +208,22 @@ fn put_back(boundary: &Mesh, widened: &Mesh, surface: &Mesh, by: f64) -> Result<
             let normal = normal(origin);
             planes.add(normal, (origin[0] - p).dot(normal), area(origin));
         });
-        corner.unwrap_or_else(|| p + planes.way().clamp_length_max(MITER * by))
+        corner.unwrap_or_else(|| p + planes.displacement().clamp_length_max(MITER_LIMIT * by))
     };
     let vertices: Vec<_> = boundary.vertices().par_iter().map(moved).collect();
-    // What came to one place but for rounding.
-    let mut cells = Cells::new(near, surface.bounds().0);
+    // Merges vertices that are equal up to rounding.
+    let mut hash = SpatialHash::new(near, surface.bounds().0);
     let mut kept: Vec<DVec3> = Vec::new();
     let mut one = |&v: &DVec3| {
-        if let Some(same) = cells.find_near(v, |i| kept[i].distance(v) <= near) {
+        if let Some(same) = hash.find_near(v, |i| kept[i].distance(v) <= near) {
             return kept[same];
         }
-        cells.push(v);
+        hash.insert(v);
         kept.push(v);
         v
     };
     let vertices: Vec<_> = vertices.iter().map(&mut one).collect();
-    without_edges(&vertices, boundary.triangles())
+    without_collapsed(&vertices, boundary.triangles())
 }
 
 #[cfg(test)]
@@ -249,8 +253,8 @@ mod tests {
         Mesh::new(&vertices, mesh.triangles()).unwrap()
     }
 
-    /// Boxes through, on and beside each other: the volume is that of all together, and the area has
-    /// no inner walls.
+    /// Boxes across, on and beside each other. The union has their common volume and no inner
+    /// walls.
     #[test]
     fn boxes_become_one_solid() {
         let base = cuboid([0.0; 3], [1.0; 3]);
@@ -284,11 +288,11 @@ mod tests {
     #[test]
     fn a_surface_moves_as_its_faces_do() {
         let box_ = turned(&cuboid([0.0; 3], [1.0, 2.0, 3.0]));
-        let moved = widened(&box_, 0.1).unwrap();
+        let moved = offset_outwards(&box_, 0.1).unwrap();
         assert!((moved.volume() - 1.2 * 2.2 * 3.2).abs() < 1e-6);
         let ball = Mesh::icosphere(1.0, 4).unwrap();
-        let wide = widened(&ball, 1e-3).unwrap();
-        let back = put_back(&wide, &wide, &ball, 1e-3).unwrap();
+        let wide = offset_outwards(&ball, 1e-3).unwrap();
+        let back = undo_offset(&wide, &wide, &ball, 1e-3).unwrap();
         assert_eq!(ball.vertices(), back.vertices());
     }
 }

@@ -1,4 +1,4 @@
-//! Distances anywhere, in the grid and far outside, against those of the solids themselves.
+//! Distances everywhere, in the grid and far outside, against those of the exact solids.
 
 use proptest::prelude::*;
 use vps_build::{
@@ -8,7 +8,7 @@ use vps_core::{DistanceField, Vec3};
 
 use crate::support::{cases, density, direction, encoding, vector};
 
-/// Bars, plates, and what winds around itself.
+/// Bars, plates, and strands that wind around each other.
 fn mesh() -> impl Strategy<Value = Mesh> {
     prop_oneof![
         (0.05..0.3_f64).prop_map(models::frame),
@@ -52,7 +52,7 @@ proptest! {
             prop_assert!(sampled <= distance + over, "{point}: {sampled}, {distance} + {over}");
             let off = trilinear.error_bound_at(point) + rounding;
             prop_assert!((sampled - distance).abs() <= off, "{point}: {sampled}, {distance} +- {off}");
-            // The other samplings take up to four values and their errors.
+            // The other samplings read up to four values, with their errors.
             let beyond = 4.0 * (map.accuracy().far_m - map.accuracy().near_m);
             for field in [&local as &dyn DistanceField, &linear] {
                 let sampled = -field.penetration(point, normal);
@@ -63,7 +63,7 @@ proptest! {
     }
 }
 
-/// Where the surface is a face of the box around the solid, distances from outside are exact.
+/// Where the surface is a face of the bounding box, distances from outside are exact.
 #[test]
 fn distances_of_faces_are_exact_from_afar() {
     let mesh = Mesh::cuboid([1.0, 0.4, 0.7]).unwrap();
@@ -79,7 +79,7 @@ fn distances_of_faces_are_exact_from_afar() {
         let off = map.trilinear().signed_distance(point) - way;
         assert!(off.abs() <= near + 1e-6 * way, "{way}: {off}");
         assert!(map.trilinear().inward_direction(point).distance(-Vec3::Y) < 0.02);
-        // Over an edge it is no longer than the way around the border.
+        // Over an edge it is no longer than the path around the border.
         let over_edge = Vec3::new(0.5 + way, 0.2 + way, 0.0);
         let off = map.trilinear().signed_distance(over_edge) - 2.0_f32.sqrt() * way;
         assert!(off <= map.trilinear().overestimate_bound_at(over_edge));

@@ -1,4 +1,4 @@
-//! Files: what is written comes back, and damage is noticed.
+//! Files: a written asset is read back unchanged, and damage is noticed.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -60,7 +60,7 @@ fn an_asset_comes_back_as_it_was() {
     );
 }
 
-/// Those that are not are refused, whatever is in them; one step of 8 further they are read.
+/// Misaligned bytes are refused, whatever their content. One step of 8 further they are read.
 #[test]
 fn bytes_must_lie_at_a_multiple_of_8() {
     let bytes = encode(&small());
@@ -91,7 +91,7 @@ fn other_files_are_refused() {
     let mut long = good.clone();
     long.push(0);
     assert!(matches!(parse(&long), Err(FormatError::Length { .. })));
-    // A header that asks for more than there can be.
+    // A header with a count beyond all limits.
     let mut huge = good;
     huge[24..32].fill(0xff);
     assert!(matches!(parse(&huge), Err(FormatError::Length { .. })));
@@ -117,7 +117,7 @@ fn output(arguments: &[&str]) -> Output {
     command.args(arguments).output().unwrap()
 }
 
-/// Exit status and what went to standard error.
+/// Exit status and standard error.
 fn vps_build(arguments: &[&str]) -> (Option<i32>, String) {
     let output = output(arguments);
     (
@@ -134,9 +134,14 @@ fn options_that_messages_recommend_exist() {
     });
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut found = 0;
-    for folder in ["", "commands", "read"].map(|folder| sources.join(folder)) {
+    let mut folders = vec![sources];
+    while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
             let text = std::fs::read_to_string(&path).unwrap_or_default();
             let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
             let words = code.flat_map(|l| l.split(|c: char| !c.is_ascii_lowercase() && c != '-'));
@@ -198,7 +203,7 @@ fn the_command_builds_and_complains_in_one_line() {
             .point_count()
             > 100
     );
-    // Five meshes and one asset; nothing half-written is left.
+    // Five meshes and one asset. No incomplete file is left.
     assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 6);
 }
 
@@ -206,7 +211,7 @@ fn the_command_builds_and_complains_in_one_line() {
 fn inspect_reports_on_meshes_and_assets() {
     let folder = Folder::new("inspect");
     let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
-    // A closed box, and one with a hole, a doubled triangle and a turned one.
+    // A closed box, and one with a hole, a duplicate triangle and a reversed one.
     let box_mesh = Mesh::cuboid([0.3, 0.2, 0.1]).unwrap();
     let mut good = String::from("OFF\n8 12 0\n");
     for v in box_mesh.vertices() {
@@ -257,7 +262,7 @@ fn samples_are_within_their_stated_error() {
     let folder = Folder::new("sample");
     let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
     write_asset(&folder.0.join("small.vps"), &small()).unwrap();
-    // In, on and around the box, up to far outside of the grid.
+    // In, on and around the box, and far outside of the grid.
     let mut points = String::from("x,y,z\n");
     for i in 0..60 {
         let at = 0.01 * f64::from(i) - 0.25;
@@ -287,7 +292,7 @@ fn samples_are_within_their_stated_error() {
         let v: Vec<f32> = line.split(',').map(|c| c.parse().unwrap()).collect();
         let expected = -exact.signed_distance(vps_core::Vec3::new(v[0], v[1], v[2]));
         assert!((v[3] - expected).abs() <= v[7], "{line}: exact {expected}");
-        // Never further away than it is.
+        // The solid never seems further away than it is.
         assert!(v[3] >= expected - v[8], "{line}: exact {expected}");
         inside += i32::from(v[3] > 0.0);
     }
@@ -362,7 +367,7 @@ fn exports_are_meshes_again() {
     assert!(message.contains("levels 1 to"), "{message}");
 }
 
-/// Six quads around a box.
+/// Six quads of a box.
 fn obj_box(low: DVec3, high: DVec3) -> String {
     let mut text = String::new();
     for i in 0..8 {
@@ -378,8 +383,8 @@ fn obj_box(low: DVec3, high: DVec3) -> String {
     text + "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n"
 }
 
-/// A wall of 20 cm on maps in metres: nothing is lost to 32-bit coordinates, and what goes in and
-/// comes out is in those of the map.
+/// A wall of 20 cm on maps in metres. Nothing is lost to 32-bit coordinates, and input and output
+/// are in the coordinates of the map.
 #[test]
 fn far_from_its_origin_a_mesh_is_built_as_well() {
     let folder = Folder::new("far");
@@ -456,7 +461,7 @@ fn far_from_its_origin_a_mesh_is_built_as_well() {
     }
 }
 
-/// Small files whose numbers speak of much cost little, and each fault is one line.
+/// Small files with large counts cost little memory, and each fault is one line.
 #[test]
 fn damaged_files_are_told_in_one_line_or_built() {
     let folder = Folder::new("damaged");
@@ -467,7 +472,7 @@ fn damaged_files_are_told_in_one_line_or_built() {
                property float y\nproperty float z\nelement face 999999999\n\
                property list uchar int vertex_indices\nend_header\n0123456789abcdef";
     for (name, text, expected) in [
-        // Needles and faces much smaller than the box around all.
+        // Needles, and faces much smaller than the bounding box.
         ("needles.obj", far("v 1 1 1e10\n"), None),
         ("far.obj", far("v 1 1 999999999999\n"), Some("")),
         ("further.obj", far("v 1 1 1e31\n"), Some("further.obj:8: ")),

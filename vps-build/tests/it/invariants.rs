@@ -1,4 +1,4 @@
-//! What must hold for any mesh and any pose.
+//! Invariants of any mesh and any pose.
 
 use crate::support::{
     asset, asset_of, bumpy_mesh, cases, density, direction, encoding, exact_penetration, vector,
@@ -23,7 +23,7 @@ fn clustering() -> impl Strategy<Value = Clustering> {
 proptest! {
     #![proptest_config(cases(48))]
 
-    /// Validation of the tree promises the same; here it is counted out.
+    /// Counted explicitly, besides the validation of the tree.
     #[test]
     fn points_lie_in_one_leaf_and_in_all_balls_above(
         mesh in bumpy_mesh(), points in 1..900_u32, branching in 2..20_u32, clustering in clustering(),
@@ -93,9 +93,9 @@ proptest! {
         }
     }
 
-    /// Points keep their distance, and every place of the surface has one near: a candidate lies no
-    /// further than the diagonal of a sampling voxel, √3 / √2 of the spacing, and what kept it out
-    /// no further than the spacing from there.
+    /// Points keep their spacing, and every position on the surface has one near. A candidate is
+    /// within the diagonal of a sampling voxel, √3 / √2 of the spacing, and the point that rejected
+    /// it is within the spacing of it.
     #[test]
     fn points_are_spread_evenly(
         mesh in bumpy_mesh(), spacing in 0.04..0.15_f64,
@@ -110,7 +110,7 @@ proptest! {
         let points: Vec<_> = (0..tree.point_count()).map(|i| tree.point(i).as_dvec3()).collect();
         for i in 0..points.len() {
             for j in 0..i {
-                // Those on the two sides of a thin wall are no neighbours.
+                // Points on the two sides of a thin wall may be closer.
                 if tree.normal(i).dot(tree.normal(j)) > 0.0 {
                     prop_assert!(points[i].distance(points[j]) > 0.999 * spacing);
                 }
@@ -135,7 +135,7 @@ proptest! {
         let asset = asset(&mesh, 10, encoding);
         let map = &asset.voxelmap;
         for (center, radius, towards, how_far, normal, from_afar) in balls {
-            // Some from outside of the grid, with balls that reach it or do not.
+            // Some from outside of the grid, with balls that reach it or not.
             let center = if from_afar == 0 { center * 4.0 } else { center };
             let inside = towards * how_far;
             check(&map.local(), center, radius, inside, normal).unwrap();
@@ -144,8 +144,8 @@ proptest! {
         }
     }
 
-    /// Close to the surface, where a disc is bounded by how little the field bends: points of the
-    /// disc's rim, the highest of them where the field rises.
+    /// Close to the surface, where the curvature bounds a disc: points of the disc's rim, the
+    /// highest where the field rises.
     #[test]
     fn small_discs_are_bounded(
         mesh in bumpy_mesh(), encoding in encoding(), density in density(),
@@ -171,8 +171,8 @@ proptest! {
         }
     }
 
-    /// Pieces that leave the grid, or straddle its border, along any axes: of what is bumpy, and of a
-    /// plate, whose field goes on flat.
+    /// Discs that leave the grid or straddle its border, along any axes: of a bumpy body, and of a
+    /// plate, whose field continues flat.
     #[test]
     fn discs_across_the_border_are_bounded(
         mesh in prop_oneof![bumpy_mesh(), Just(Mesh::cuboid([1.0, 0.2, 0.7]).unwrap())],
@@ -191,7 +191,7 @@ proptest! {
             let way = Vec3::select(on_border, at.signum(), at) * (bounds.max - middle);
             let center = middle + way + off * (8.0 * s);
             let rising = field.inward_direction(center);
-            // Straight at what lies ahead, or tilted any way.
+            // Facing the body, or tilted in any direction.
             let normal = if is_level { rising.normalize_or(Vec3::Y) } else { normal };
             let along = (rising - normal * rising.dot(normal)).normalize_or(normal.any_orthonormal_vector());
             let aside = Quat::from_axis_angle(normal, turn) * along;
@@ -202,7 +202,7 @@ proptest! {
         }
     }
 
-    /// Penetrations of sampled solids against those of the solids themselves.
+    /// Penetrations of sampled solids against those of the exact solids.
     #[test]
     fn penetration_is_within_its_error_of_a_ball_and_a_box(
         points in prop::collection::vec((vector(0.62), direction()), 200),
@@ -211,7 +211,7 @@ proptest! {
             let half = Vec3::new(0.5, 0.3, 0.4);
             let mesh = Mesh::cuboid((half * 2.0).as_dvec3().to_array()).unwrap();
             check_against(&asset(&mesh, 10, encoding).voxelmap, &Cuboid::new(half), 0.0, &points)?;
-            // The facets of the mesh lie this far within the ball at most.
+            // Largest depth of the mesh's facets within the ball.
             let mesh = Mesh::icosphere(0.5, 4).unwrap();
             let facets = mesh.triangles().iter().map(|t| {
                 let [a, b, c] = t.map(|v| mesh.vertices()[v as usize]);
@@ -232,7 +232,7 @@ fn check_against(
     let (local, trilinear) = (map.local(), map.trilinear());
     for &(p, normal) in points {
         let exact = exact.penetration(p, normal);
-        // Near the surface the error bound holds as it stands.
+        // The error bound holds near the surface.
         let near = exact.abs() + 2.0 * map.grid().voxel_size() <= map.accuracy().band_m;
         let beyond = if near { 0.0 } else { map.accuracy().far_m };
         for (sampled, bound) in [
@@ -276,7 +276,7 @@ fn points_keep_their_distance_and_cover_the_surface() {
             off <= (0.02 * found).max(1.0),
             "{found} in place of {points}"
         );
-        // Of a surface this flat, a point's share says how far the next may be.
+        // On a surface this flat, the area of a point bounds the distance of the next.
         let spacing = (mesh.area() / found).sqrt();
         let closest = |p: DVec3, skip: usize| {
             (0..asset.tree.point_count())
@@ -291,7 +291,7 @@ fn points_keep_their_distance_and_cover_the_surface() {
             let inward = asset.tree.normal(i).as_dvec3();
             assert!(exact_penetration(&mesh, p + inward * 0.01) > 0.0);
         }
-        // The corners are the hardest to reach.
+        // Corners are the hardest to reach.
         for &corner in mesh.vertices() {
             assert!(closest(corner, usize::MAX) < 1.7 * spacing);
         }
@@ -313,7 +313,7 @@ fn the_number_of_threads_changes_no_byte() {
     assert!(one == bytes(5));
 }
 
-/// Over a flat face both samplings give the exact depth, eq. 4 for a shell that faces it.
+/// Over a flat face both samplings give the exact depth. So does eq. 4 for a shell that faces it.
 #[test]
 fn flat_faces_are_sampled_exactly() {
     let mesh = Mesh::cuboid([1.0, 0.6, 0.8]).unwrap();

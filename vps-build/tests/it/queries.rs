@@ -1,4 +1,4 @@
-//! Every query against a test of all points.
+//! Every query against a brute-force test of all points.
 
 use proptest::prelude::*;
 use vps_build::{Encoding, Mesh};
@@ -22,7 +22,7 @@ fn flat_contacts<F: DistanceField + ?Sized>(query: &Query<'_, F>) -> Vec<Contact
     contacts
 }
 
-/// The deepest, the first of equally deep ones.
+/// The deepest contact, the first of equally deep ones.
 fn deepest<'c>(contacts: impl IntoIterator<Item = &'c Contact>) -> Option<Contact> {
     let deeper = |best: Option<Contact>, c: &Contact| match best {
         Some(b) if b.penetration >= c.penetration => Some(b),
@@ -31,7 +31,7 @@ fn deepest<'c>(contacts: impl IntoIterator<Item = &'c Contact>) -> Option<Contac
     contacts.into_iter().fold(None, deeper)
 }
 
-/// Eqs. 2 and 3 in twice the digits, and the size of what is summed.
+/// Eqs. 2 and 3 in 64 bits, and the magnitude of the summands.
 fn wrench_of(
     shell: &Asset<'_>,
     contacts: &[Contact],
@@ -56,7 +56,7 @@ fn wrench_of(
     (wrench, size as f32)
 }
 
-/// The manifold that is searched for is the one picked from a list of all contacts.
+/// The manifold found by the search is the one reduced from a list of all contacts.
 fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
     query: &Query<'_, F>,
     field: &F,
@@ -68,7 +68,7 @@ fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
         prop_assert!(query.manifold::<N>().contacts().is_empty());
         return Ok(());
     };
-    // As the query turns it, to the bit.
+    // Rotated as in the query, to the bit.
     let rotation = Mat3::from_quat(pose.rotation);
     let at = rotation * deepest.position + pose.translation;
     let inward = rotation.transpose() * field.inward_direction(at);
@@ -84,7 +84,7 @@ fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
     Ok(())
 }
 
-/// All queries with one field agree with the test of all points.
+/// All queries of one field agree with brute force.
 fn check_query<F: DistanceField + ?Sized>(
     shell: &Asset<'_>,
     field: &F,
@@ -94,14 +94,14 @@ fn check_query<F: DistanceField + ?Sized>(
     let tree = &shell.tree;
     let query = Query::new(tree, field, pose).with_margin(margin);
     let flat = flat_contacts(&query);
-    // The test of all points is that of each by itself.
+    // The batch query of all points agrees with that of each point.
     let tolerance = 1e-5;
     let mut expected = flat.iter().peekable();
     for i in 0..tree.point_count() {
         let at = pose.transform_point(tree.point(i));
         let alone = field.penetration(at, pose.rotation * tree.normal(i));
         if let Some(c) = expected.next_if(|c| c.point as usize == i) {
-            // Where the field jumps from voxel to voxel, rounding of the place may decide.
+            // Where the field jumps between voxels, rounding of the position may decide.
             let off = (alone - c.penetration).abs();
             prop_assert!(
                 off <= tolerance + field.error_bound(),
@@ -157,7 +157,7 @@ fn check_query<F: DistanceField + ?Sized>(
     Ok(())
 }
 
-/// Forces along the gradients of the field, and what a small motion changes, contact by contact.
+/// Forces along the gradients of the field, and their derivatives, contact by contact.
 fn check_linear_wrench<F: DistanceField + ?Sized>(
     linear: &LinearWrench,
     shell: &Asset<'_>,
@@ -168,7 +168,7 @@ fn check_linear_wrench<F: DistanceField + ?Sized>(
     weight: Weight,
 ) -> Result<(), TestCaseError> {
     let (way, turn) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(-0.7, 0.2, 0.4));
-    // As the query turns it, to the bit.
+    // Rotated as in the query, to the bit.
     let rotation = Mat3::from_quat(pose.rotation);
     let zero = glamx::DVec3::ZERO;
     let (mut force, mut torque, mut size) = (zero, zero, 0.0);
@@ -205,7 +205,7 @@ fn check_linear_wrench<F: DistanceField + ?Sized>(
     Ok(())
 }
 
-/// More time never gives less, and enough time gives all.
+/// More time never gives less, and enough time gives everything.
 fn check_time_critical<F: DistanceField + ?Sized>(
     query: &Query<'_, F>,
     center: Vec3,
@@ -236,7 +236,7 @@ fn check_time_critical<F: DistanceField + ?Sized>(
     Ok(())
 }
 
-/// All samplings of a map, and fields of other kinds.
+/// All samplings of a map, and other kinds of fields.
 fn check_all_fields(
     shell: &Asset<'_>,
     map: &Voxelmap<'_>,
@@ -245,7 +245,7 @@ fn check_all_fields(
 ) -> Result<(), TestCaseError> {
     let bounds = Ball::new(0.4).bounds();
     let function = FieldFn::new(|p: Vec3| 0.4 - p.length(), 1.0, bounds, 1e-6);
-    // The one compiled as a whole, the others asked through a table.
+    // One is compiled as a whole, the others are called dynamically.
     check_query(shell, &map.trilinear(), pose, margin)?;
     let others: [&dyn DistanceField; 9] = [
         &map.local(),
@@ -283,7 +283,7 @@ proptest! {
         }
     }
 
-    /// Of so many contacts not all are kept while the deepest is searched for.
+    /// With many contacts, not all are kept while the deepest is searched for.
     #[test]
     fn manifolds_of_thousands_of_contacts_are_those_of_a_list(
         shell in bumpy_mesh(),
@@ -300,7 +300,7 @@ proptest! {
         }
     }
 
-    /// Moving both bodies together leaves everything as it was, but for rounding.
+    /// Moving both bodies together changes nothing, up to rounding.
     #[test]
     fn a_common_motion_changes_nothing(
         shell in bumpy_mesh(), field in bumpy_mesh(),
@@ -326,7 +326,7 @@ proptest! {
         prop_assert!((w.torque - v.torque).length() < tolerance);
     }
 
-    /// What the first body feels, the second feels the other way round.
+    /// The second body feels the reaction of what the first one feels.
     #[test]
     fn swapping_the_bodies_negates_the_force(
         a in bumpy_mesh(), b in bumpy_mesh(), pose in pose(0.6), margin in 0.0..0.05_f32,
@@ -349,7 +349,7 @@ proptest! {
             let (mut these, mut those) = (0, 0);
             ab.for_each_contact(|_| these += 1);
             ba.for_each_contact(|_| those += 1);
-            // Those that are just within the margin may be lost to rounding.
+            // Contacts just within the margin may be lost to rounding.
             let near = i32::abs(these - those);
             prop_assert!(near <= 3);
             let on_a = ab.wrench_on_first(Vec3::ZERO, Weight::Area);
@@ -364,7 +364,7 @@ proptest! {
         }
     }
 
-    /// Nothing that is met on the way is missed, and nothing is met too late.
+    /// No contact along the motion is missed, and none is found too late.
     #[test]
     fn sweeps_find_the_first_contact(
         shell in bumpy_mesh(), field in bumpy_mesh(), start in pose(1.5), way in vector(3.0),
@@ -386,24 +386,24 @@ proptest! {
         match (sweep.first_contact(tolerance), first) {
             (None, first) => prop_assert_eq!(first, None),
             (Some(impact), None) => {
-                // Between two of the times looked at, or grazing.
+                // Between two sampled times, or grazing.
                 let gap = -impact.closest.penetration;
                 prop_assert!(gap < 0.1, "{gap}");
             }
             (Some(impact), Some(first)) => {
                 prop_assert!(impact.time <= first);
                 prop_assert!(!touches(0.0) || impact.time == 0.0);
-                // Up to there it is free.
+                // Free up to there.
                 let before = (0..50).map(|i| impact.time * i as f32 / 50.0);
                 prop_assert!(impact.time == 0.0 || before.into_iter().all(|t| !touches(t)));
-                // And close to the solid: √3 is the most by which interpolation is steeper.
+                // And close to the solid: interpolation is steeper by √3 at most.
                 prop_assert!(impact.closest.penetration > -2.0 * tolerance);
             }
         }
     }
 }
 
-/// The shell of what lies within is asked, whichever has fewer points.
+/// The shell of the inner body is queried, whichever has fewer points.
 #[test]
 fn a_body_within_another_is_found() {
     let block = Mesh::cuboid([1.0, 0.8, 0.6]).unwrap();
@@ -420,7 +420,8 @@ fn a_body_within_another_is_found() {
         let [outer, hollow] =
             [&block, &hollow].map(|m| asset(m, of_outer, Encoding::Distances(None)));
         let inner = asset(&ball, of_inner, Encoding::Distances(None));
-        // 0.15 m below a face: its lowest point is 0.23 m deep. In the hollow one it touches nothing.
+        // 0.15 m below a face: its lowest point is 0.23 m deep. In the hollow one it touches
+        // nothing.
         let at = Pose3::from_translation(Vec3::new(0.05, 0.25, -0.02));
         let middle = Pose3::from_translation(Vec3::new(0.02, 0.01, 0.0));
         for swapped in [false, true] {
@@ -437,7 +438,7 @@ fn a_body_within_another_is_found() {
             let (touches, depth, up) = pair(&outer, at);
             let error = outer.voxelmap.trilinear().error_bound();
             assert!(touches && (depth - 0.23).abs() < error, "{depth}");
-            // What is in the block goes up, the block goes down.
+            // The body in the block goes up, the block goes down.
             assert!(if swapped { up > 0.0 } else { up < 0.0 }, "{up}");
             // Turned, and just below the face.
             let turn = vps_core::Quat::from_euler(glamx::EulerRot::XYZ, 0.8, 0.3, 0.6);

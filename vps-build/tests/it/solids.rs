@@ -1,4 +1,4 @@
-//! Meshes that are no clean solids become what they mean.
+//! Meshes that are not clean solids are repaired to the intended solid.
 
 use crate::support::{bumpy_mesh, exact_penetration};
 use glamx::{DQuat, DVec3, EulerRot};
@@ -45,8 +45,8 @@ fn turned(mesh: &Mesh) -> Mesh {
     Mesh::new(mesh.vertices(), &triangles).unwrap()
 }
 
-/// Checks the penetration of all voxels against `exact`, to within `error` metres, but for voxels
-/// that `skip`.
+/// Checks the penetration of all voxels against `exact`, to within `error` metres, except for
+/// voxels that `skip` selects.
 fn check(
     built: &Built,
     error: f64,
@@ -73,7 +73,7 @@ fn check(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Doubled, turned and degenerate triangles change nothing at all.
+    /// Duplicate, reversed and degenerate triangles change nothing at all.
     #[test]
     fn clutter_is_cleared(
         mesh in bumpy_mesh(),
@@ -105,7 +105,7 @@ proptest! {
         prop_assert_eq!(filled.asset.mass.volume > 0.0, true);
     }
 
-    /// Away from a hole the solid is what it would be without, whatever the hole's shape.
+    /// Away from a hole the solid is the same as without it, for any shape of the hole.
     #[test]
     fn holes_are_closed(mesh in bumpy_mesh(), at in 0..1280_usize, size in 0.02..0.25_f64) {
         let middle = |t: &[u32; 3]| {
@@ -118,8 +118,8 @@ proptest! {
         let holed = Mesh::new(mesh.vertices(), &left).unwrap();
         let built = built(&holed, Sign::Winding);
         prop_assert!(built.repairs.closed_holes >= 1 && built.repairs.turned_faces == 0);
-        // Signs may differ only where the removed part of the surface, or the fan that took its
-        // place, is closer than the rest; both lie in the ball around what was removed.
+        // Signs may differ only where the removed part of the surface, or the fan in its stead, is
+        // closer than the rest. Both lie in the ball around the removed part.
         let reach = gone.iter().flatten().map(|&v| mesh.vertices()[v as usize].distance(center));
         let reach = reach.fold(0.0, f64::max);
         let near = f64::from(built.asset.voxelmap.accuracy().near_m);
@@ -165,7 +165,7 @@ fn parts_beside_each_other_are_each_turned_outwards() {
     check(&built, near, exact, |_| false).unwrap();
 }
 
-/// Two boxes that overlap are one solid: nothing of either is left within the other.
+/// Two boxes that overlap are one solid, without walls of either inside the other.
 #[test]
 fn overlapping_parts_are_one_solid() {
     let a = Mesh::cuboid([1.0, 0.4, 0.4]).unwrap();
@@ -174,7 +174,7 @@ fn overlapping_parts_are_one_solid() {
     assert!(built.repairs.united);
     let map = &built.asset.voxelmap;
     let center = map.center_penetration(map.grid().voxel_at(vps_core::Vec3::ZERO));
-    // The walls of each within the other would be 0.2 m away, too, but not along the arms.
+    // The inner walls would be 0.2 m away, too, but not along the arms.
     assert!((center - 0.2).abs() < 0.03);
     let arm = map.center_penetration(map.grid().voxel_at(vps_core::Vec3::new(0.19, 0.0, 0.0)));
     assert!(arm > 0.15, "{arm}");
@@ -182,11 +182,11 @@ fn overlapping_parts_are_one_solid() {
     assert!((built.asset.mass.volume / volume - 1.0).abs() < 1e-5);
 }
 
-/// A wall of triangles turned at random is a solid by what can be reached, not by winding numbers.
+/// A wall of randomly oriented triangles is a solid by flood fill, not by winding numbers.
 #[test]
 fn faces_apart_and_turned_at_random_are_filled() {
     let ball = Mesh::icosphere(0.5, 3).unwrap();
-    // No two triangles share a vertex place: each is a little smaller about its middle.
+    // No two triangles share a vertex position: each is shrunk a little about its centroid.
     let mut vertices = Vec::new();
     for (i, t) in ball.triangles().iter().enumerate() {
         let corners = t.map(|v| ball.vertices()[v as usize]);
@@ -215,8 +215,8 @@ fn faces_apart_and_turned_at_random_are_filled() {
     .unwrap();
 }
 
-/// A box from one corner to another, in an odd direction; its faces are cut along the other diagonal
-/// if `flipped`.
+/// A box from one corner to another, in an oblique direction. Its faces are cut along the other
+/// diagonal if `flipped`.
 fn askew_box(low: [f64; 3], high: [f64; 3], flipped: bool) -> Mesh {
     let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.7, 1.1);
     let (low, high) = (DVec3::from_array(low), DVec3::from_array(high));
@@ -245,8 +245,8 @@ fn depth(built: &Built, place: [f64; 3]) -> f64 {
     f64::from(-built.asset.voxelmap.trilinear().signed_distance(place))
 }
 
-/// Boxes that share a face, or a part of it with corners of both, whichever way its two sides are cut:
-/// there is no wall between them.
+/// Boxes that share a face, or a part of it with corners of both, whichever way its two sides are
+/// cut, have no wall between them.
 #[test]
 fn boxes_that_share_corners_have_no_wall_between_them() {
     let first = askew_box([0.0; 3], [1.0; 3], false);
@@ -267,7 +267,7 @@ fn boxes_that_share_corners_have_no_wall_between_them() {
     }
 }
 
-/// Mirrored bodies are turned though others are open, share a face with them or lie around them.
+/// Mirrored bodies are turned even if others are open, share a face with them or enclose them.
 #[test]
 fn mirrored_bodies_are_turned_beside_open_ones() {
     let volume = |mesh: &Mesh| f64::from(built(mesh, Sign::Auto).asset.mass.volume);
@@ -298,7 +298,7 @@ fn mirrored_bodies_are_turned_beside_open_ones() {
     }
 }
 
-/// A facet without extent before the others says nothing, and closes nothing.
+/// A leading facet of zero extent encloses nothing and closes nothing.
 #[test]
 fn a_collapsed_facet_may_stand_before_an_open_box() {
     let unit = askew_box([0.0; 3], [1.0; 3], false);
@@ -309,8 +309,8 @@ fn a_collapsed_facet_may_stand_before_an_open_box() {
     assert!((built.asset.mass.volume - 1.0).abs() < 1e-5);
 }
 
-/// Neither does a surface with two sides at one place, however it is cut, nor an open one that is
-/// flat but for noise, wherever the voxels lie.
+/// A surface with two coincident sides encloses nothing, however it is cut. Nor does an open one
+/// that is flat up to noise, wherever the voxels lie.
 #[test]
 fn what_has_no_inside_is_refused() {
     let (outside, inside) = (
@@ -339,8 +339,8 @@ fn what_has_no_inside_is_refused() {
     }
 }
 
-/// Parts joined across a gap leave no slivers that a point could have no place on, nor walls where there
-/// are none.
+/// Parts joined across a gap leave no slivers on which a point could not project, and no spurious
+/// walls.
 #[test]
 fn parts_joined_across_rounding_have_points_and_no_thin_walls() {
     let rounded = |mesh: Mesh| {

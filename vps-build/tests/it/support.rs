@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use vps_build::{BuildOptions, Density, Encoding, Mesh, PointCount, Resolution, build};
 use vps_core::{Asset, Pose3, Quat, Vec3};
 
-/// Cases of a test: few in the usual run, more in the long one.
+/// Cases of a test: few in the usual run, more in the long run.
 pub(crate) fn cases(usual: u32) -> ProptestConfig {
     let times = std::env::var("VPS_TEST_TIMES").map_or(1, |t| t.parse().unwrap());
     ProptestConfig::with_cases(usual * times)
@@ -81,8 +81,8 @@ pub(crate) fn pose(size: f32) -> impl Strategy<Value = Pose3> {
     })
 }
 
-/// Penetration of a point in a mesh by looking at every triangle; its sign is that of the
-/// generalised winding number.
+/// Penetration of a point in a mesh by brute force. The sign is that of the generalised winding
+/// number.
 pub(crate) fn exact_penetration(mesh: &Mesh, p: DVec3) -> f64 {
     let (mut closest, mut solid_angle) = (f64::INFINITY, 0.0);
     for corners in mesh.triangles() {
@@ -97,7 +97,7 @@ pub(crate) fn exact_penetration(mesh: &Mesh, p: DVec3) -> f64 {
     if inside { closest } else { -closest }
 }
 
-/// Written unlike the library's: the distance to the plane where the foot lies in the triangle,
+/// Independent of the library: the distance to the plane where the projection lies in the triangle,
 /// otherwise to the edges.
 fn triangle_distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     let normal = (b - a).cross(c - a);
