@@ -59,7 +59,7 @@ pub(crate) fn contacts(
     for shell in pair.shells(pos12) {
         match manifolds {
             Manifolds::Spread => {
-                shell.manifold::<MAX_CONTACTS>(pos12, prediction, motion, previous, &mut found)
+                shell.manifold::<MAX_CONTACTS>(pos12, prediction, motion, previous, &mut found);
             }
             Manifolds::Segments(level) => shell.segments(pos12, prediction, level, &mut found),
         }
