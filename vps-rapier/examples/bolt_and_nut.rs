@@ -1,4 +1,4 @@
-//! A nut without friction screws itself down a bolt: what convex parts cannot do.
+//! A nut without friction screws itself down a bolt, which convex parts cannot do.
 //! `cargo run --release --example bolt_and_nut`.
 
 use std::error::Error;
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     // Their axis is z.
     world.gravity = -Vector::Z * 9.81;
-    // Small parts need small tolerances, above all of what rapier takes for not having moved.
+    // Small parts need small tolerances, above all for the motion below which rapier keeps contacts.
     world.integration_parameters.length_unit = scale as f32 / 10.0;
     let smooth = |shape: VpsShapeBuilder| -> Result<ColliderBuilder, Box<dyn Error>> {
         Ok(ColliderBuilder::new(shape.build()?.into())

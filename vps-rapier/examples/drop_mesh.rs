@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         narrow_phase: narrow_phase(),
         ..PhysicsWorld::default()
     };
-    // A world of small things needs small tolerances.
+    // A world of small bodies needs small tolerances.
     world.integration_parameters.length_unit = size;
     let ground = ColliderBuilder::cuboid(20.0 * size, size, 20.0 * size);
     world.insert(

@@ -17,9 +17,10 @@ use vps_rapier::{VpsShape, VpsShapeBuilder};
 const PERIOD: Duration = Duration::from_millis(1);
 /// The same in seconds.
 const DT: f32 = 1e-3;
-/// A system may wake a thread this much too late: before a deadline the loop does not sleep.
+/// Time before a deadline in which the loop spins instead of sleeping: a system may wake a thread this
+/// much too late.
 const AWAKE: Duration = Duration::from_micros(200);
-/// Of the contacts, in N for each m² that is a metre deep.
+/// Stiffness of the contacts, in N for each m² that is a metre deep.
 const CONTACT_STIFFNESS: f32 = 1e9;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -27,12 +28,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some(seconds) => seconds.parse()?,
         None => 2,
     };
-    // What is moved is the shell, what it touches the voxelmap. Both are along the z axis.
+    // The moving body is the shell, the other the voxelmap. Both are along the z axis.
     let peg = shape(models::peg(48).scaled(0.08)?, 3000)?;
     let ring = shape(models::torus(48).scaled(0.08)?, 1000)?;
     let (tree, field) = (&peg.asset().tree, ring.asset().voxelmap.trilinear());
 
-    // A light tool is felt less than a true one; 1000 N/m and 2 N m/rad are what desktop devices bear.
+    // A light tool is felt less than a heavy one. Desktop devices bear 1000 N/m and 2 N m/rad.
     let tool = Tool::of(&peg.asset().mass, 0.05);
     let options = CouplingOptions::critically_damped(&tool, 1000.0, 2.0);
     let mut coupling = VirtualCoupling::new(tool, options, device(0.0))?;
@@ -53,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let contact = Query::new(tree, &field, pose).linear_wrench(tool.center, Weight::Area);
         let contact = (contact * CONTACT_STIFFNESS).rotated(pose.rotation);
         touching += u32::from(contact.wrench.force != Vec3::ZERO);
-        // What is not finite is refused: the device keeps the last good wrench.
+        // A wrench that is not finite is refused: the device keeps the last good one.
         let wrench = match coupling.step(device, contact, DT) {
             Ok(wrench) => wrench,
             Err(_) => coupling.rendered(),
@@ -74,7 +75,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A shape of about so many points.
+/// A shape of about `points` points.
 fn shape(mesh: Mesh, points: u32) -> Result<VpsShape, Box<dyn Error>> {
     let options = BuildOptions {
         points: PointCount::About(points),
@@ -83,22 +84,22 @@ fn shape(mesh: Mesh, points: u32) -> Result<VpsShape, Box<dyn Error>> {
     Ok(VpsShapeBuilder::new(mesh).options(options).build()?)
 }
 
-/// Where the user wants the peg to be: from below into the ring, and then around in it, 4 mm further
-/// aside than there is room, and tilted. A true device is asked here.
+/// The pose the user wants for the peg: from below into the ring, then around in it, tilted and 4 mm
+/// further aside than there is room. A true device is asked here.
 fn device(time: f32) -> Pose3 {
-    let way = (2.0 * time).min(1.0);
+    let progress = (2.0 * time).min(1.0);
     let aside = 0.012 * (2.0 * time - 1.0).clamp(0.0, 1.0);
     let (sin, cos) = (TAU * time).sin_cos();
-    let place = Vec3::new(aside * cos, aside * sin, 0.1 * (way - 1.0));
-    Pose3::from_parts(place, Quat::from_rotation_x(10.0 * aside * sin))
+    let position = Vec3::new(aside * cos, aside * sin, 0.1 * (progress - 1.0));
+    Pose3::from_parts(position, Quat::from_rotation_x(10.0 * aside * sin))
 }
 
-/// A true device is given force and torque here.
+/// Sends force and torque to the device; the scripted one ignores them.
 fn exert(wrench: Wrench) {
     black_box(wrench);
 }
 
-/// Sleeps, and spins at last.
+/// Sleeps until a moment, and spins at the end.
 fn wait_until(due: Instant) {
     let asleep = due.saturating_duration_since(Instant::now() + AWAKE);
     if !asleep.is_zero() {

@@ -1,4 +1,4 @@
-//! A pile of knots, no two of which a convex hull could tell from balls:
+//! A pile of knots, whose convex hulls are almost balls:
 //! `cargo run --release --example pile -- 60`.
 
 use std::error::Error;

@@ -1,36 +1,40 @@
-//! Compounds with VPS shapes among their parts: parry's own way through a compound asks only parry
-//! about its parts.
+//! Manifolds of compounds with VPS shapes among their parts. parry's own traversal of a compound asks
+//! only parry about the parts.
 
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{Compound, Shape};
 
-use crate::VpsShape;
-use crate::manifolds::remember;
+use crate::manifolds::warm_start;
+use crate::shape::VpsShape;
 
-/// The compound a shape is, if a VPS shape is among its parts.
-pub(crate) fn compound_of_vps(shape: &dyn Shape) -> Option<&Compound> {
+/// A shape as a compound, if a VPS shape is among its parts.
+pub(crate) fn as_compound_with_vps(shape: &dyn Shape) -> Option<&Compound> {
     let compound = shape.as_compound()?;
     let is_vps = |part: &dyn Shape| part.as_shape::<VpsShape>().is_some();
     let has_vps = compound.shapes().iter().any(|(_, part)| is_vps(&**part));
     has_vps.then_some(compound)
 }
 
-/// A part of a shape: its number and pose, if the shape is a compound.
+/// A part of a compound, or a shape of its own.
 struct Part<'s> {
-    place: Option<(u32, Pose)>,
+    /// Its index and pose in the compound.
+    in_compound: Option<(u32, Pose)>,
     shape: &'s dyn Shape,
 }
 
 fn parts(shape: &dyn Shape) -> Vec<Part<'_>> {
     let Some(compound) = shape.as_compound() else {
-        return vec![Part { place: None, shape }];
+        return vec![Part {
+            in_compound: None,
+            shape,
+        }];
     };
     let parts = (0..).zip(compound.shapes());
     parts
-        .map(|(number, (pose, shape))| Part {
-            place: Some((number, *pose)),
+        .map(|(index, (pose, shape))| Part {
+            in_compound: Some((index, *pose)),
             shape: &**shape,
         })
         .collect()
@@ -38,11 +42,11 @@ fn parts(shape: &dyn Shape) -> Vec<Part<'_>> {
 
 impl Part<'_> {
     fn pose(&self) -> Pose {
-        self.place.map_or(Pose::IDENTITY, |(_, pose)| pose)
+        self.in_compound.map_or(Pose::IDENTITY, |(_, pose)| pose)
     }
 
-    fn number(&self) -> u32 {
-        self.place.map_or(0, |(number, _)| number)
+    fn index(&self) -> u32 {
+        self.in_compound.map_or(0, |(index, _)| index)
     }
 }
 
@@ -57,45 +61,45 @@ pub(crate) fn update_parts<M: Clone, C: Copy>(
     let mut old = std::mem::take(manifolds);
     let seconds = parts(g2);
     for part1 in parts(g1) {
-        let around = part1.shape.compute_local_aabb().loosened(prediction);
+        let bounds = part1.shape.compute_local_aabb().loosened(prediction);
         for part2 in &seconds {
             let pos = part1.pose().inv_mul(&(*pos12 * part2.pose()));
-            if !part2.shape.compute_aabb(&pos).intersects(&around) {
+            if !part2.shape.compute_aabb(&pos).intersects(&bounds) {
                 continue;
             }
-            let key = [part1.number(), part2.number()];
-            let is_theirs = |m: &ContactManifold<M, C>| {
-                (part1.place.is_none() || m.subshape1 == key[0])
-                    && (part2.place.is_none() || m.subshape2 == key[1])
+            let key = [part1.index(), part2.index()];
+            let belongs = |m: &ContactManifold<M, C>| {
+                (part1.in_compound.is_none() || m.subshape1 == key[0])
+                    && (part2.in_compound.is_none() || m.subshape2 == key[1])
             };
-            let (mut theirs, others) = old.into_iter().partition(is_theirs);
+            let (mut updated, others) = old.into_iter().partition(belongs);
             old = others;
-            let before = theirs.clone();
-            // What parry keeps beside the manifolds of meshes cannot be kept here: rapier has room for
-            // the pair of compounds alone, and for nothing but parry's own in a file.
+            let previous = updated.clone();
+            // The workspace parry keeps for meshes is lost here: rapier stores one for the pair of
+            // compounds, and writes only parry's own types to files.
             let mut workspace = None;
-            // All pairs of shapes that are no VPS shapes have been asked of parry.
-            let asked = dispatcher.contact_manifolds(
+            // parry answers all pairs without a VPS shape.
+            let result = dispatcher.contact_manifolds(
                 &pos,
                 part1.shape,
                 part2.shape,
                 prediction,
-                &mut theirs,
+                &mut updated,
                 &mut workspace,
             );
-            if asked.is_err() {
-                theirs.clear();
+            if result.is_err() {
+                updated.clear();
             }
             if workspace.is_some() {
-                remember(&mut theirs, &before);
+                warm_start(&mut updated, &previous);
             }
-            for mut manifold in theirs {
-                if let Some((number, pose)) = part1.place {
-                    manifold.subshape1 = number;
+            for mut manifold in updated {
+                if let Some((index, pose)) = part1.in_compound {
+                    manifold.subshape1 = index;
                     manifold.set_subshape_pos1(Some(pose));
                 }
-                if let Some((number, pose)) = part2.place {
-                    manifold.subshape2 = number;
+                if let Some((index, pose)) = part2.in_compound {
+                    manifold.subshape2 = index;
                     manifold.set_subshape_pos2(Some(pose));
                 }
                 manifolds.push(manifold);

@@ -1,16 +1,16 @@
-//! VPS shapes in rapier's debug renderer, which draws nothing of custom shapes itself.
+//! VPS shapes in rapier's debug renderer, which itself leaves custom shapes out.
 
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
 use rapier3d::math::{Pose, Vector};
 use rapier3d::pipeline::{DebugColor, DebugRenderBackend, DebugRenderObject};
 
-use crate::VpsShape;
-use crate::real::vector;
+use crate::precision::vector;
+use crate::shape::VpsShape;
 
 /// Draws the VPS shapes of all colliders, also those in compounds, by the edges of their
-/// [surfaces](VpsShape::surface_mesh), in a colour that is given to the backend as it is: in HSLA,
-/// hue from 0 to 360, the rest from 0 to 1. To be called beside `DebugRenderPipeline::render`, which
-/// leaves them out.
+/// [surfaces](VpsShape::surface_mesh). The colour is in HSLA, hue from 0 to 360 and the rest from 0 to
+/// 1, and goes to the backend as it is. Call it beside `DebugRenderPipeline::render`, which leaves VPS
+/// shapes out.
 pub fn debug_render(
     backend: &mut impl DebugRenderBackend,
     colliders: &ColliderSet,

@@ -1,3 +1,5 @@
+//! The query dispatcher: which pairs are answered here, and which part by part of a compound.
+
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::details::{
     NormalConstraints, ShapeCastOptions, cast_shapes_composite_shape_shape,
@@ -14,51 +16,31 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Compound, Shape};
 
-use crate::cast::{Linear, Turning, cast};
-use crate::check::connected;
-use crate::compound::{compound_of_vps, update_parts};
-use crate::contact::PairContact;
+use crate::compound::{as_compound_with_vps, update_parts};
+use crate::connection::set_connected;
 use crate::manifolds::update_manifolds;
-use crate::pair::Pair;
-use crate::real::{core_pose, core_real, real, vector};
+use crate::precision::{core_pose, core_real, real, vector};
+use crate::query::cast::cast;
+use crate::query::motion::{RigidMotions, Translation};
+use crate::query::pair::Pair;
+use crate::query::pair_contact::PairContact;
+use crate::query::shell_in_field::Sampling;
+use crate::reduce::Manifolds;
 use crate::workspace::mark;
 
-/// How a voxelmap is sampled between the centres of its voxels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sampling {
-    /// Trilinear interpolation: penetration changes smoothly as a body rolls.
-    #[default]
-    Trilinear,
-    /// Eq. 4 of the paper.
-    Local,
-}
-
-/// What an engine gets of a pair's contacts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Manifolds {
-    /// The deepest contact and those that spread over the largest area (section 3.2), in one
-    /// manifold for each normal: four of each, eight in all.
-    #[default]
-    Spread,
-    /// The deepest contact of each segment of a level of the shell's tree (section 2.4), 1 being the
-    /// top, in a manifold of its own. rapier's `contact_clustering` would join them again: switch it
-    /// off.
-    Segments(u32),
-}
-
-/// Answers all queries about pairs with a [`VpsShape`](crate::VpsShape), also inside of a compound,
-/// and says `Unsupported` to all others: chain it with parry's own dispatcher.
+/// Answers all queries about pairs with a [`VpsShape`](crate::VpsShape), also inside of a compound. All
+/// other pairs are `Unsupported`: chain it with parry's own dispatcher.
 ///
-/// This is where Bullet's `btCollisionAlgorithm` was (section 3.2).
+/// It takes the place of Bullet's `btCollisionAlgorithm` (section 3.2).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VpsDispatcher {
     /// How voxelmaps are sampled.
     pub sampling: Sampling,
-    /// What an engine gets.
+    /// Which contacts an engine gets.
     pub manifolds: Manifolds,
 }
 
-/// What is to be done about two shapes.
+/// How two shapes are asked.
 #[expect(
     clippy::large_enum_variant,
     reason = "one at a time, on the stack for one query"
@@ -73,18 +55,18 @@ enum Task<'s> {
 
 impl VpsDispatcher {
     fn task<'s>(&self, g1: &'s dyn Shape, g2: &'s dyn Shape) -> Result<Task<'s>, Unsupported> {
-        connected();
-        if let Some(compound) = compound_of_vps(g1) {
+        set_connected();
+        if let Some(compound) = as_compound_with_vps(g1) {
             return Ok(Task::PartsOfFirst(compound));
         }
-        if let Some(compound) = compound_of_vps(g2) {
+        if let Some(compound) = as_compound_with_vps(g2) {
             return Ok(Task::PartsOfSecond(compound));
         }
         let pair = Pair::of(g1, g2, self.sampling);
         pair.map(Task::Pair).ok_or(Unsupported)
     }
 
-    /// This dispatcher, and parry's own for parts of compounds that are no VPS shapes.
+    /// This dispatcher with parry's own for the other parts of compounds.
     fn with_parry(self) -> impl QueryDispatcher {
         self.chain(DefaultQueryDispatcher)
     }
@@ -185,7 +167,7 @@ impl QueryDispatcher for VpsDispatcher {
         let all = self.with_parry();
         Ok(match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let motion = Linear {
+                let motion = Translation {
                     start: *pos12,
                     velocity: local_vel12,
                 };
@@ -214,10 +196,7 @@ impl QueryDispatcher for VpsDispatcher {
         let stop = stop_at_penetration;
         Ok(match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let motion = Turning {
-                    motions: [motion1, motion2],
-                    closing_speed: top_speed(motion1, g1) + top_speed(motion2, g2),
-                };
+                let motion = RigidMotions::new([motion1, motion2], [g1, g2]);
                 let options = ShapeCastOptions {
                     max_time_of_impact: end_time,
                     stop_at_penetration,
@@ -233,15 +212,6 @@ impl QueryDispatcher for VpsDispatcher {
             ),
         })
     }
-}
-
-/// No point of a shape is faster than its centre plus its spin times its reach.
-fn top_speed(motion: &NonlinearRigidMotion, shape: &dyn Shape) -> Real {
-    let sphere = shape.compute_local_bounding_sphere();
-    let reach = sphere.center.distance(motion.local_center) + sphere.radius;
-    let spin = motion.angvel.length();
-    let spin_speed = if spin == 0.0 { 0.0 } else { spin * reach };
-    motion.linvel.length() + spin_speed
 }
 
 impl<M, C> PersistentQueryDispatcher<M, C> for VpsDispatcher
@@ -272,7 +242,7 @@ where
         Ok(())
     }
 
-    /// VPS shapes are not convex, so this is never about them.
+    /// VPS shapes are not convex, so this is never asked about them.
     fn contact_manifold_convex_convex(
         &self,
         _pos12: &Pose,

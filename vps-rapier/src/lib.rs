@@ -23,12 +23,15 @@
 //! ```
 //!
 //! # What collides
-//! A VPS shape collides with VPS shapes and with every shape of parry, in compounds too: as a shell
-//! in the exact field of a ball, a cuboid or a half-space, or in the [`ShapeField`] of what is near of
-//! another, whose documentation says what it makes of surfaces without an interior; and as the field of points on
-//! the edges of the other, so that what is smaller than the spacing of the shell's points does not
-//! slip between them.
+//! A VPS shape collides with VPS shapes and with every shape of parry, in compounds too. Its shell is
+//! asked in the exact field of a ball, a cuboid or a half-space, and in the [`ShapeField`] of any other
+//! shape of parry, which also defines a field of surfaces without an interior. Its voxelmap is asked at
+//! points on the edges of the other shape, so that shapes smaller than the spacing of the shell's points
+//! do not slip between them.
 
+// Rooms, each of which uses only those before it:
+// precision, shape (the asset as a shape), field (other shapes as distance fields), query (a pair is
+// asked), reduce (from all contacts to a few), manifolds and compound (what rapier stores), dispatcher.
 #![forbid(unsafe_code)]
 
 #[cfg(all(feature = "f32", feature = "f64"))]
@@ -49,46 +52,42 @@ pub use vps_core;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-#[cfg(feature = "build")]
-mod builder;
-mod cast;
 mod check;
 mod compound;
-mod contact;
+mod connection;
 #[cfg(feature = "debug-render")]
 mod debug_render;
 mod dispatcher;
+mod field;
 mod manifolds;
-mod pair;
-mod probe;
-mod real;
+mod precision;
+mod query;
+mod reduce;
 mod shape;
-mod shape_field;
 #[cfg(feature = "serde")]
 mod snapshot;
-mod surface;
-mod surface_field;
-mod surroundings;
-mod thickness;
-mod way;
 mod workspace;
 
 use rapier3d::geometry::NarrowPhase;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 
-#[cfg(feature = "build")]
-pub use builder::{ShapeError, ShapeInBackground, VpsShapeBuilder};
 pub use check::{NoDispatcher, check};
 #[cfg(feature = "debug-render")]
 pub use debug_render::debug_render;
-pub use dispatcher::{Manifolds, Sampling, VpsDispatcher};
+pub use dispatcher::VpsDispatcher;
+pub use field::shape_field::ShapeField;
+pub use query::shell_in_field::Sampling;
+pub use reduce::Manifolds;
+#[cfg(feature = "build")]
+pub use shape::builder::{ShapeError, ShapeInBackground, VpsShapeBuilder};
 pub use shape::{Role, VpsShape};
-pub use shape_field::ShapeField;
 #[cfg(feature = "serde")]
-pub use snapshot::{SavedShapes, Snapshot};
+pub use snapshot::Snapshot;
+#[cfg(feature = "serde")]
+pub use snapshot::saved_shapes::SavedShapes;
 
-/// A narrow phase with the default [`VpsDispatcher`] before parry's own. Without it VPS shapes meet
-/// nothing, see [`check`].
+/// A narrow phase with the default [`VpsDispatcher`] before parry's own. Without it VPS shapes collide
+/// with nothing, see [`check`].
 pub fn narrow_phase() -> NarrowPhase {
     NarrowPhase::with_query_dispatcher(VpsDispatcher::default().chain(DefaultQueryDispatcher))
 }

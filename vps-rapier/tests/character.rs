@@ -16,17 +16,17 @@ use vps_rapier::rapier3d::parry::query::ShapeCastOptions;
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{VpsShape, narrow_phase};
 
-/// Centre and edges of the boxes a ground is made of, in metres, and how far they are turned about z:
-/// a floor, a ramp and a wall that the ramp ends at.
+/// Centres and edges of the boxes of a ground in metres, and their rotations about z: a floor, a ramp
+/// and a wall at the end of the ramp.
 const GROUND: [([f64; 3], [f64; 3], f64); 3] = [
     ([0.0, -0.1, 0.0], [4.0, 0.2, 1.6], 0.0),
     ([0.8, 0.1, 0.0], [2.0, 0.2, 1.6], 0.3),
     ([1.7, 0.6, 0.0], [0.6, 1.6, 1.6], 0.0),
 ];
 
-/// Of a capsule, in metres.
+/// Radius of a capsule, in metres.
 const RADIUS: Real = 0.2;
-/// From its centre to those of its ends.
+/// Distance from its centre to the centres of its ends.
 const HALF: Real = 0.3;
 
 const DT: Real = 1.0 / 60.0;
@@ -64,7 +64,7 @@ fn vps_ground() -> SharedShape {
         triangles.extend(part.triangles().iter().map(|t| t.map(|i| first + i)));
     }
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
-    // Normals of the shell are taken over two voxels, so that they lean within two of the ramp.
+    // Normals of the shell are differences over two voxels, so they tilt within two of the ramp.
     let options = BuildOptions {
         resolution: Resolution::VoxelSize(0.05),
         points: PointCount::About(8000),
@@ -77,7 +77,7 @@ fn capsule() -> SharedShape {
     SharedShape::capsule_y(HALF, RADIUS)
 }
 
-/// The same capsule with balls in its ends, which the controller sees on a VPS shape.
+/// The same capsule with balls in its ends, whose contacts with a VPS shape the controller sees.
 fn capsule_with_balls() -> SharedShape {
     let ball = SharedShape::ball(RADIUS);
     SharedShape::compound(vec![
@@ -97,19 +97,19 @@ fn world_of(body: RigidBodyBuilder, shape: &SharedShape) -> (PhysicsWorld, Rigid
     (world, body)
 }
 
-/// Moves a character in steps, from where its pose is to be; `step` may change the world.
+/// Moves a character in steps from a starting pose; `step` may change the world.
 fn moves(
     world: &mut PhysicsWorld,
     character: &SharedShape,
     at: &mut Pose,
-    way: Vector,
+    displacement: Vector,
     mut step: impl FnMut(&mut PhysicsWorld),
 ) -> Vec<(Vector, EffectiveCharacterMovement)> {
     let controller = KinematicCharacterController::default();
     let mut moves = Vec::new();
     for _ in 0..240 {
         let queries = world.query_pipeline();
-        let moved = controller.move_shape(DT, &queries, &**character, at, way, |_| ());
+        let moved = controller.move_shape(DT, &queries, &**character, at, displacement, |_| ());
         at.translation += moved.translation;
         moves.push((at.translation, moved));
         step(world);
@@ -117,7 +117,7 @@ fn moves(
     moves
 }
 
-/// 4 s towards +x and down, at 1 m/s each.
+/// Walks for 4 s towards +x and down, at 1 m/s each.
 fn walk(
     ground: &SharedShape,
     character: &SharedShape,
@@ -134,7 +134,7 @@ fn walk(
     )
 }
 
-/// Where a walk is away from another at most, in metres, and the share of its steps on the ground.
+/// The largest distance between two walks, in metres, and the share of steps on the ground.
 fn compared(
     walk: &[(Vector, EffectiveCharacterMovement)],
     expected: &[(Vector, EffectiveCharacterMovement)],
@@ -161,7 +161,7 @@ fn characters_walk_as_among_shapes_of_parry() {
         let (at, _) = expected.last().unwrap();
         assert!(at.x > least_x && at.x < 1.25, "by parry: {at}");
     }
-    // What sees whether it stands on something.
+    // The balls by which the controller sees that it stands on something.
     let walks = [
         ("capsule on VPS", &ours, capsule(), 0, false),
         (
@@ -220,9 +220,9 @@ fn pushed(crate_shape: &SharedShape) -> Real {
     for _ in 0..10 {
         let mut hits = Vec::new();
         let queries = world.query_pipeline();
-        let way = Vector::X * DT;
+        let ahead = Vector::X * DT;
         let moved =
-            controller.move_shape(DT, &queries, &*character, &at, way, |hit| hits.push(hit));
+            controller.move_shape(DT, &queries, &*character, &at, ahead, |hit| hits.push(hit));
         at.translation += moved.translation;
         let mut queries = world.broad_phase.as_query_pipeline_mut(
             world.narrow_phase.query_dispatcher(),

@@ -1,4 +1,4 @@
-//! What is asked of a compound with VPS shapes in it is what its parts say, asked one by one.
+//! Queries about a compound with VPS shapes give what the same queries about its parts give.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
@@ -14,7 +14,7 @@ use vps_rapier::rapier3d::parry::query::{
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{VpsDispatcher, VpsShape};
 
-/// How far two ways to the same answer may be apart, in metres and seconds.
+/// Tolerance between two computations of the same value, in metres and seconds.
 const SAME: Real = 1e-3;
 
 fn vps(mesh: &Mesh) -> SharedShape {
@@ -36,7 +36,7 @@ fn parts() -> Vec<(Pose, SharedShape)> {
     ]
 }
 
-/// What meets the compound.
+/// Shapes that meet the compound.
 fn others() -> Vec<(&'static str, SharedShape)> {
     let half = SharedShape::cuboid(0.2, 0.1, 0.3);
     let two = SharedShape::compound(vec![
@@ -54,7 +54,7 @@ fn others() -> Vec<(&'static str, SharedShape)> {
     ]
 }
 
-/// Where the other is: far away, close by, and in parts of the compound.
+/// Poses of the other shape: far away, close by, and in parts of the compound.
 fn poses() -> Vec<Pose> {
     let mut n = 0_u32;
     let mut next = || {
@@ -74,7 +74,7 @@ fn all() -> impl QueryDispatcher {
     VpsDispatcher::default().chain(DefaultQueryDispatcher)
 }
 
-/// Asks of every pose of every other, given the compound first and the other second.
+/// Calls `ask` for every pose of every other shape, with the compound first and the other second.
 fn for_each_pair(mut ask: impl FnMut(&str, &Pose, &[(Pose, SharedShape)], [&dyn Shape; 2])) {
     let parts = parts();
     let compound = SharedShape::compound(parts.clone());
@@ -190,8 +190,8 @@ fn casts_meet_the_part_that_is_first() {
     let all = all();
     let (mut hits, mut misses) = (0, 0);
     for_each_pair(|what, pose, parts, [compound, other]| {
-        // Towards a place in the middle, for a time that is too short for some.
-        let way = Vector::new(0.2, -0.1, 0.0) - pose.translation;
+        // Towards a point in the middle, for a time that is too short for some.
+        let displacement = Vector::new(0.2, -0.1, 0.0) - pose.translation;
         for stop_at_penetration in [false, true] {
             let options = ShapeCastOptions {
                 target_distance: 0.02,
@@ -199,8 +199,8 @@ fn casts_meet_the_part_that_is_first() {
                 ..ShapeCastOptions::with_max_time_of_impact(0.4)
             };
             let expected = first((0..).zip(parts).map(|(number, (at, part))| {
-                let (pose, way) = (at.inv_mul(pose), at.rotation.inverse() * way);
-                let hit = all.cast_shapes(&pose, way, &**part, other, options);
+                let (pose, displacement) = (at.inv_mul(pose), at.rotation.inverse() * displacement);
+                let hit = all.cast_shapes(&pose, displacement, &**part, other, options);
                 (number, *at, hit.unwrap())
             }));
             *(if expected.is_some() {
@@ -208,10 +208,10 @@ fn casts_meet_the_part_that_is_first() {
             } else {
                 &mut misses
             }) += 1;
-            let found = all.cast_shapes(pose, way, compound, other, options);
+            let found = all.cast_shapes(pose, displacement, compound, other, options);
             assert_same(what, found.unwrap(), expected);
-            let (back, way_back) = (pose.inverse(), -(pose.rotation.inverse() * way));
-            let found = all.cast_shapes(&back, way_back, other, compound, options);
+            let (back, reverse) = (pose.inverse(), -(pose.rotation.inverse() * displacement));
+            let found = all.cast_shapes(&back, reverse, other, compound, options);
             assert_same(what, found.unwrap().map(ShapeCastHit::swapped), expected);
         }
     });
@@ -224,9 +224,13 @@ fn turning_casts_meet_the_part_that_is_first() {
     let (mut hits, mut misses) = (0, 0);
     for_each_pair(|what, pose, parts, [compound, other]| {
         let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
-        let way = Vector::new(0.2, -0.1, 0.0) - pose.translation;
-        let moving =
-            NonlinearRigidMotion::new(*pose, Vector::ZERO, way, Vector::new(0.5, 1.0, 0.0));
+        let displacement = Vector::new(0.2, -0.1, 0.0) - pose.translation;
+        let moving = NonlinearRigidMotion::new(
+            *pose,
+            Vector::ZERO,
+            displacement,
+            Vector::new(0.5, 1.0, 0.0),
+        );
         for stop in [false, true] {
             let expected = first((0..).zip(parts).map(|(number, (at, part))| {
                 let still = still.prepend(*at);

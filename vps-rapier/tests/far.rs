@@ -71,9 +71,9 @@ fn vector(size: f64) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
 }
 
-/// Places in and around the solids, and far away.
+/// Points in and around the solids, and far away.
 fn place() -> impl Strategy<Value = DVec3> {
-    // In single precision more would be lost to the coordinates alone.
+    // In single precision, larger coordinates would lose more than the tolerance.
     let farthest = if size_of::<Real>() == 8 { 1e6 } else { 500.0 };
     prop_oneof![
         3 => vector(0.55),
@@ -82,7 +82,7 @@ fn place() -> impl Strategy<Value = DVec3> {
     ]
 }
 
-/// Not a parameter of the ray, but metres.
+/// Distance of the exact hit in metres, and its normal.
 fn exact_hit(solid: &Solid, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
     let ray = Ray::new(from_exact(origin), from_exact(direction));
     let hit = solid.mesh.cast_local_ray_and_get_normal(&ray, 1e9, false)?;
@@ -102,7 +102,7 @@ proptest! {
         let direction = (towards - origin).normalize();
         let speed = 10_f64.powf(speed);
         let ray = Ray::new(from_exact(origin), from_exact(direction * speed));
-        // As the ray is, in its precision.
+        // The ray as it is in its precision.
         let (origin, direction) = (to_exact(ray.origin), to_exact(ray.dir).normalize());
         let rounding = 1e-6 * origin.length();
         let depth = |at: f64| {
@@ -114,7 +114,7 @@ proptest! {
         }
         let hit = solid.shape.cast_local_ray_and_get_normal(&ray, Real::MAX, false);
         let side = if starts_inside { -1.0 } else { 1.0 };
-        // Nowhere before has it been deeper than a voxel on the other side.
+        // Before the hit it was nowhere deeper than a voxel on the other side.
         let end = hit.map_or(2.0 * origin.length() + 2.0, |h| f64::from(h.time_of_impact) * speed);
         let start = (origin.length() - 1.0).max(0.0).min(end);
         let mut at = start;
@@ -126,7 +126,7 @@ proptest! {
             prop_assert!(depth(end).abs() <= VOXEL + rounding, "{}: {}", solid.name, depth(end));
             prop_assert!((hit.normal.length() - 1.0).abs() < 1e-3);
             prop_assert!(to_exact(hit.normal).dot(direction) < 1e-3);
-            // In time, or not at all.
+            // Within the time, or not at all.
             let time = hit.time_of_impact;
             let again = solid.shape.cast_local_ray_and_get_normal(&ray, time * 1.001, false);
             prop_assert!(again.is_some());
@@ -138,7 +138,7 @@ proptest! {
         } else {
             prop_assert_eq!(solid_hit, hit.map(|h| h.time_of_impact));
         }
-        // Where a ray and those beside it hit one face, not grazing, there it is.
+        // Where a ray and its neighbours hit one face and do not graze it, the hit is there.
         if starts_inside == (depth(0.0) > 0.0) && depth(0.0).abs() > VOXEL {
             let Some((distance, normal)) = exact_hit(solid, origin, direction) else {
                 return Ok(());
@@ -207,7 +207,7 @@ proptest! {
         let turn = DQuat::from_axis_angle(axis.normalize(), angle);
         let solid = solid("thin", mesh);
         for (from, u, v) in rays {
-            // Through the middle of what is thin, from one side to the other.
+            // Through the middle of the thin part, from one side to the other.
             let middle = turn * if is_bar {
                 DVec3::new(0.28 * u, 0.0, 0.0)
             } else {
@@ -217,13 +217,13 @@ proptest! {
             let ray = Ray::new(from_exact(middle + from), from_exact(-from));
             let hit = solid.shape.cast_local_ray(&ray, 2.0, true);
             let hit = hit.map(|t| (f64::from(t) - 1.0).abs() * from.length());
-            // The way within what is thin is longer the more it is met at a slant.
+            // An oblique ray stays longer in the thin part.
             prop_assert!(hit.is_some_and(|off| off < 10.0 * VOXEL), "{hit:?} at {middle}");
         }
     }
 }
 
-/// What parry's own shapes do: a ray from within leaves through the wall, with a normal against it.
+/// As for parry's own shapes, a ray from within leaves through the wall, with a normal against it.
 #[test]
 fn rays_from_within_are_as_those_of_parry() {
     let half = Vector::new(0.3, 0.2, 0.25);
@@ -249,7 +249,7 @@ fn rays_from_within_are_as_those_of_parry() {
         );
         assert_eq!(cast(&shape, true).unwrap().time_of_impact, 0.0);
     }
-    // Nothing, nowhere, and never.
+    // A ray from nowhere, one without a direction, and one that points away.
     let nowhere = Ray::new(Vector::splat(Real::NAN), Vector::X);
     assert_eq!(shape.cast_local_ray(&nowhere, 1.0, true), None);
     let still = Ray::new(Vector::X, Vector::ZERO);
@@ -258,7 +258,7 @@ fn rays_from_within_are_as_those_of_parry() {
     assert_eq!(shape.cast_local_ray(&away, Real::MAX, true), None);
 }
 
-/// A fast small ball at a cage far away meets its bars when it does, or flies between them.
+/// A fast small ball meets the bars of a distant cage at the right time, or flies between them.
 #[test]
 fn a_fast_ball_meets_the_bars_of_a_cage() {
     let solid = &SOLIDS[0];
@@ -266,7 +266,7 @@ fn a_fast_ball_meets_the_bars_of_a_cage() {
     let ball = Ball::new(0.02);
     let (mut met, mut passed) = (0, 0);
     for i in 0..60 {
-        // All around, at bars and past them.
+        // From all around, at bars and past them.
         let turn = DQuat::from_rotation_y(0.1 * f64::from(i)) * DQuat::from_rotation_x(0.37);
         let aim = DVec3::new(0.02 * f64::from(i % 9), 0.45 - 0.03 * f64::from(i % 7), 0.0);
         let from = turn * (aim + DVec3::new(0.0, 0.0, 40.0));
@@ -283,17 +283,25 @@ fn a_fast_ball_meets_the_bars_of_a_cage() {
             .cast_shapes(&pose, velocity, &solid.shape, &ball, options)
             .unwrap();
         let found = hit.map(|h| f64::from(h.time_of_impact) * 500.0);
-        // The closest the middle of the ball comes to the bars, and where it first comes close.
-        let depth = |way: f64| {
-            let at = from + to_exact(velocity).normalize() * way;
+        // The smallest distance of the ball's centre from the bars, and where it first comes close.
+        let depth = |distance: f64| {
+            let at = from + to_exact(velocity).normalize() * distance;
             solid.exact.penetration(at, 0).penetration_m + 0.02
         };
-        let ways = || (0..3000).map(|i| 39.0 + 0.001 * f64::from(i));
-        let deepest = ways().map(depth).fold(f64::NEG_INFINITY, f64::max);
+        let distances = || (0..3000).map(|i| 39.0 + 0.001 * f64::from(i));
+        let deepest = distances().map(depth).fold(f64::NEG_INFINITY, f64::max);
         match found {
-            Some(way) => {
-                assert!(depth(way).abs() < VOXEL, "{i}: {} at {way}", depth(way));
-                assert!(ways().filter(|&w| w < way).all(|w| depth(w) < VOXEL));
+            Some(distance) => {
+                assert!(
+                    depth(distance).abs() < VOXEL,
+                    "{i}: {} at {distance}",
+                    depth(distance)
+                );
+                assert!(
+                    distances()
+                        .filter(|&d| d < distance)
+                        .all(|d| depth(d) < VOXEL)
+                );
                 met += 1;
             }
             None => {

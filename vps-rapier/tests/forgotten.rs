@@ -1,5 +1,5 @@
-//! A world without the dispatcher is found out. The only test of its process, since the warning is
-//! given once in each.
+//! A world without the dispatcher is detected. The only test of its process, since each process warns
+//! once.
 
 mod support;
 
@@ -11,7 +11,7 @@ use vps_rapier::rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{NoDispatcher, VpsDispatcher, VpsShape, check, narrow_phase};
 
-/// Keeps what is logged.
+/// Keeps the logged messages.
 struct Log(Mutex<Vec<String>>);
 
 impl log::Log for Log {
@@ -56,12 +56,12 @@ fn a_world_without_our_dispatcher_is_found_out() {
     let said = logged();
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("vps_rapier::narrow_phase()"), "{said:?}");
-    // So is ours behind parry's, which finds nothing for meshes and says that is all there is.
+    // So is ours behind parry's, which claims to support meshes and finds nothing.
     let behind = DefaultQueryDispatcher.chain(VpsDispatcher::default());
     world.narrow_phase = NarrowPhase::with_query_dispatcher(behind);
     let error = check(&world.narrow_phase, &world.colliders).unwrap_err();
     assert_eq!(error, NoDispatcher(first));
-    // Part of a compound alone is enough.
+    // A part of a compound is enough.
     let mut world = PhysicsWorld::default();
     let (_, second) = world.insert(above, ColliderBuilder::new(compound));
     let error = check(&world.narrow_phase, &world.colliders).unwrap_err();

@@ -1,4 +1,4 @@
-//! What can be seen of a VPS shape.
+//! The surface mesh of a VPS shape and its debug rendering.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
@@ -23,7 +23,7 @@ fn the_surface_of_a_shape_is_closed_and_where_the_mesh_is() {
             let off = vps_core::DistanceField::signed_distance(&field, vertex).abs();
             assert!(off < 0.6 * map.grid().voxel_size(), "{vertex}: {off}");
         }
-        // Each edge goes there and back, so the volume is that of a solid.
+        // Each edge is used in both directions, so the volume is that of a closed mesh.
         let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
         let mut volume = 0.0_f64;
         for [a, b, c] in surface.triangles() {

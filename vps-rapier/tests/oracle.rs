@@ -70,10 +70,10 @@ proptest! {
     #[test]
     fn penetration_and_separation_are_within_their_error(
         shell in 0..5_usize, field in 0..5_usize,
-        axis in direction(), angle in 0.0..6.3_f32, way in direction(), distance in 0.0..1.6_f32,
+        axis in direction(), angle in 0.0..6.3_f32, toward in direction(), distance in 0.0..1.6_f32,
     ) {
         let (shell, field) = (&SHAPES[shell], &SHAPES[field]);
-        let pose = Pose3::from_parts(way * distance, Quat::from_axis_angle(axis, angle));
+        let pose = Pose3::from_parts(toward * distance, Quat::from_axis_angle(axis, angle));
         let tree = &shell.asset.tree;
         let sampled = field.asset.voxelmap.trilinear();
         let at = |point: usize| pose.transform_point(tree.point(point));
@@ -82,8 +82,8 @@ proptest! {
             .collect();
         let deepest = (0..exact.len()).max_by(|&a, &b| exact[a].total_cmp(&exact[b])).unwrap();
         let found = Query::new(tree, &sampled, pose).closest().unwrap();
-        // The one found is no deeper than it is by more than its error, and no less deep than the
-        // exact one by more than that one's.
+        // The contact found is deeper than its exact depth by no more than its error bound, and
+        // shallower than the exact deepest by no more than the error bound there.
         let rounding = 1e-5;
         let over = found.penetration - exact[deepest];
         let what = || format!("{} in {}: {over} m over {}", shell.name, field.name, exact[deepest]);
@@ -101,7 +101,7 @@ proptest! {
         prop_assert_eq!(off, None, "{}", what());
     }
 
-    /// The mesh's own projection of any point, for all samplings.
+    /// Compares all samplings with the mesh's own projection of any point.
     #[test]
     fn samplings_are_within_their_error(
         shape in 0..5_usize, at in prop::array::uniform3(-0.6..0.6_f32), normal in direction(),

@@ -1,4 +1,4 @@
-//! Where shapes come from, and where they go.
+//! How shapes are built, loaded, scaled and measured.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
@@ -19,7 +19,7 @@ fn options() -> BuildOptions {
     }
 }
 
-/// A folder of its own for a test, gone with the value.
+/// A folder of a test, removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -52,7 +52,7 @@ fn a_shape_is_built_from_triangles_in_the_background_and_kept() {
     let file = first.file().unwrap().to_path_buf();
     let read = VpsShape::from_file(&file).unwrap();
     assert_eq!(read.asset().tree.points(), first.asset().tree.points());
-    // What is in the file is taken, not built again.
+    // The asset in the file is used, not built again.
     let sphere = VpsShapeBuilder::new(models::torus(16))
         .options(options())
         .build()
@@ -148,12 +148,12 @@ fn the_wall_of_a_cup_is_found_between_the_points_of_a_coarse_shell() {
     let block = shape(Mesh::cuboid([3.0; 3]).unwrap(), 400);
     let cup = shape(models::cup(48), 3000);
     let extents = cup.compute_local_aabb().half_extents() * 2.0;
-    // The cup is not small, its wall is.
+    // The cup is large, its wall is thin.
     assert!(extents.min_element() as f32 > 2.0 * block.spacing());
     assert!(cup.thickness() < block.spacing());
     let dispatcher = vps_rapier::VpsDispatcher::default();
     for turned in [0.0, 0.7, 1.9, 3.0] {
-        // Somewhere its side is 0.02 m in the upper face.
+        // Its side reaches 0.02 m into the upper face.
         let rotation = Rotation::from_rotation_y(turned as Real);
         let low = cup.compute_aabb(&rotation.into()).mins.y;
         let above = Pose::from_parts(Vector::Y * (1.5 - low - 0.02), rotation);

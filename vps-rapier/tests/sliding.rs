@@ -1,4 +1,4 @@
-//! What slides without friction goes on as it is, on whatever level ground.
+//! A body that slides without friction keeps its velocity on level ground of any shape.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
@@ -64,7 +64,7 @@ fn squares(is_open: bool) -> (Vec<Vector>, Vec<[u32; 3]>) {
 }
 
 fn grounds() -> Vec<(&'static str, SharedShape)> {
-    // As many points as the body has: which of the two is the shell must not hang on a few.
+    // As many points as the body, so that a few more do not decide which of the two is the shell.
     let options = BuildOptions {
         resolution: Resolution::VoxelsAlongLongest(200),
         points: PointCount::About(4000),
@@ -101,7 +101,7 @@ fn nothing_holds_back_what_slides_on_level_ground() {
     ];
     let mut failed = String::new();
     for (ground_name, ground) in grounds() {
-        // A height field lies around its origin.
+        // A height field is centred at its origin.
         let middle = if ground_name == "height field" {
             4.5
         } else {

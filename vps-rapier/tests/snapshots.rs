@@ -1,4 +1,4 @@
-//! A world that was saved and read goes on as it would have.
+//! A world that was saved and read continues as the original.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
@@ -12,7 +12,7 @@ use vps_build::{Mesh, models};
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::{Role, Snapshot, VpsShape, check, narrow_phase};
 
-/// A file of its own for a test, gone with the value.
+/// A file of a test, removed on drop.
 struct File(PathBuf);
 
 impl Drop for File {
@@ -52,7 +52,7 @@ fn drop_all(world: &mut PhysicsWorld, shapes: &[SharedShape]) {
     }
 }
 
-/// Steps, saves and reads, steps both; the first step after which they differ.
+/// Steps a world, saves and reads it, and steps both: the first step after which they differ.
 fn first_difference(mut world: PhysicsWorld, before: usize) -> Option<usize> {
     for _ in 0..before {
         world.step();

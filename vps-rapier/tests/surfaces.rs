@@ -1,4 +1,4 @@
-//! The field of triangles near a shape is that of all triangles, and keeps the promises of a field.
+//! The field of the triangles near a shape equals that of all triangles, and conforms.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]

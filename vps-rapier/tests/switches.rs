@@ -1,4 +1,4 @@
-//! The switches of rapier, and what must not depend on them.
+//! The behaviour under rapier's options, and results that must not depend on them.
 
 // Numbers of rapier are 32-bit or 64-bit.
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
@@ -17,10 +17,10 @@ fn empty_world() -> PhysicsWorld {
     }
 }
 
-/// Gears that fall in a heap onto a ground of parry, steps on.
+/// A heap of gears after it fell for some steps on a ground of parry.
 fn heap(change: impl Fn(&mut PhysicsWorld), steps: usize) -> PhysicsWorld {
     let gear = asset(&models::gear(12), 2000);
-    // Tall and round things would roll on, and rock: parry's own do.
+    // Tall and round bodies would roll on and rock, as parry's own do.
     let mut world = empty_world();
     change(&mut world);
     world.insert(
@@ -77,14 +77,14 @@ fn a_heap_comes_to_rest_with_every_switch() {
         for (_, body) in world.bodies.iter().filter(|(_, b)| b.is_dynamic()) {
             let (y, speed) = (body.translation().y, body.linvel().length());
             assert!(y > 0.1, "{name}: a body at {y}");
-            // Clusters forget impulses when their number changes, which recycling hides.
+            // Clusters lose impulses when their number changes, which recycling hides.
             let most = if name == "no recycling" { 0.5 } else { 0.01 };
             assert!(speed < most, "{name}: a body at {speed} m/s");
         }
     }
 }
 
-/// How far before a heavy plate, or behind, a fast body is that could pass it between two steps.
+/// Signed distance of a fast body from a heavy plate it could pass between two steps.
 fn shot(
     body: &SharedShape,
     plate: &SharedShape,
@@ -127,7 +127,7 @@ fn fast_bodies_are_held_by_ccd() {
         assert!(without < -0.5, "{name} is held without: {without}");
         let with = shot(&body, &plate, free(), |b| b.ccd_enabled(true));
         assert!(with > 0.0, "{name} with CCD at {with}");
-        // What is fixed holds without being asked to.
+        // A fixed plate holds without CCD of the body.
         let on_fixed = shot(&body, &plate, fixed(), |b| b);
         assert!(on_fixed > 0.0, "{name}, fixed, at {on_fixed}");
         let soft = shot(&body, &plate, fixed(), |b| b.soft_ccd_prediction(2.0));

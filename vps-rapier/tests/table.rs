@@ -19,8 +19,8 @@ use vps_rapier::{Manifolds, Role, VpsDispatcher, VpsShape};
 
 const HALF: [f64; 3] = [0.3, 0.2, 0.25];
 
-/// How far shapes overlap, or are apart: more than the points of the shell are.
-const WAY: Real = 0.03;
+/// Overlap or distance of the shapes, larger than the spacing of the shell's points.
+const OFFSET: Real = 0.03;
 
 fn vector(v: [f64; 3]) -> Vector {
     Vector::from_array(v.map(|c| c as Real))
@@ -39,7 +39,7 @@ fn mesh(half: Vector) -> (Vec<Vector>, Vec<[u32; 3]>) {
     Cuboid::new(half).to_trimesh()
 }
 
-/// All shapes of parry, of about a size in metres.
+/// All shapes of parry, of about `size` metres.
 fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
     let half = Vector::new(0.5, 0.3, 0.4) * size;
     let at = |x: Real, y: Real, z: Real| Vector::new(x, y, z) * size;
@@ -117,7 +117,7 @@ fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
     ]
 }
 
-/// Numbers in -1..1 that are all over the place.
+/// Pseudorandom numbers in -1..1.
 fn scattered() -> impl FnMut() -> Real {
     let mut n = 0_u32;
     move || {
@@ -126,7 +126,7 @@ fn scattered() -> impl FnMut() -> Real {
     }
 }
 
-/// Distances of the contacts of a pair, deepest first, after a check of all that is said of them.
+/// Distances of the contacts of a pair, deepest first, after checks of their points and normals.
 fn contacts(
     dispatcher: &impl PersistentQueryDispatcher<(), ()>,
     pos12: &Pose,
@@ -165,10 +165,15 @@ fn contacts(
     distances
 }
 
-/// Places `other` so that it just touches the box on its way along a direction, by parry; `None`
-/// if it does not meet it.
-fn touching(exact: &dyn Shape, other: &dyn Shape, rotation: Rotation, way: Vector) -> Option<Real> {
-    let at = |t: Real| Pose::from_parts(way * t, rotation);
+/// The distance along a direction at which `other` just touches the box, by parry; `None` if it does
+/// not meet it.
+fn touching(
+    exact: &dyn Shape,
+    other: &dyn Shape,
+    rotation: Rotation,
+    direction: Vector,
+) -> Option<Real> {
+    let at = |t: Real| Pose::from_parts(direction * t, rotation);
     let touches = |t: Real| {
         DefaultQueryDispatcher
             .intersection_test(&at(t), exact, other)
@@ -208,21 +213,21 @@ fn every_pair_collides() {
             for pose in 0..24 {
                 let mut any = || Vector::new(next(), next(), next()).normalize_or(Vector::X);
                 let rotation = Rotation::from_axis_angle(any(), 3.0 * next());
-                let way = Vector::new(next(), next(), next()).normalize_or(Vector::X);
+                let direction = Vector::new(next(), next(), next()).normalize_or(Vector::X);
                 let what = format!("{name} of {size} m, pose {pose}");
                 tried += 1;
-                let Some(touch) = touching(&exact, &*other, rotation, way) else {
+                let Some(touch) = touching(&exact, &*other, rotation, direction) else {
                     continue;
                 };
                 met += 1;
-                // An overlap as deep as the shape is small, where it is smaller.
-                let overlap = WAY.min(0.4 * size);
-                let inside = Pose::from_parts(way * (touch - overlap), rotation);
-                // It may yet be a grazed edge, which no sampling is sure to find.
+                // The overlap is no deeper than a small shape is large.
+                let overlap = OFFSET.min(0.4 * size);
+                let inside = Pose::from_parts(direction * (touch - overlap), rotation);
+                // It may be a grazed edge, which sampling may miss.
                 let by_parry = DefaultQueryDispatcher.contact(&inside, &exact, &*other, 0.0);
                 let by_parry = by_parry.ok().flatten().map_or(-overlap, |c| c.dist);
                 let is_deep = by_parry < -0.2 * overlap;
-                let outside = Pose::from_parts(way * (touch + WAY + 0.02), rotation);
+                let outside = Pose::from_parts(direction * (touch + OFFSET + 0.02), rotation);
                 for dispatcher in dispatchers {
                     let all = dispatcher.chain(DefaultQueryDispatcher);
                     for ours in [&ours as &dyn Shape, &*in_compound] {
@@ -243,7 +248,7 @@ fn every_pair_collides() {
                         let found = all.intersection_test(&inside, ours, &*other).unwrap();
                         assert_eq!(found.intersecting, deepest <= 0.0, "{what}: {deepest}");
                         assert!(all.distance(&inside, &*other, ours).is_ok());
-                        // An open surface is as thick as it must be to hold what is through it.
+                        // An open surface is thick enough to hold a body that is through it.
                         let is_open = OPEN.contains(&name);
                         let apart = contacts(&all, &outside, [ours, &*other], &what);
                         assert!(
@@ -258,8 +263,8 @@ fn every_pair_collides() {
     assert!(2 * met > tried, "{met} of {tried}");
 }
 
-/// What the walk over parry's shapes leaves out: a half-space, which is everywhere, and VPS shapes,
-/// which parry does not know.
+/// The shapes the test above leaves out: a half-space, which is unbounded, and VPS shapes, which parry
+/// does not know.
 #[test]
 fn half_spaces_and_vps_shapes_collide() {
     let ours = vps_box(HALF, 3000);
@@ -276,7 +281,7 @@ fn half_spaces_and_vps_shapes_collide() {
     ];
     let all = VpsDispatcher::default().chain(DefaultQueryDispatcher);
     for (name, other, reach) in others {
-        let at = |way: Real| Pose::translation(0.3 + reach + way, 0.013, -0.007);
+        let at = |offset: Real| Pose::translation(0.3 + reach + offset, 0.013, -0.007);
         for ours in [&ours as &dyn Shape, &vps_box(HALF, 60)] {
             let inside = contacts(&all, &at(-0.01), [ours, &*other], name);
             assert!((inside[0] + 0.01).abs() < 0.002, "{name}: {inside:?}");

@@ -45,7 +45,7 @@ fn cube(extent: f64) -> Mesh {
     Mesh::cuboid([extent; 3]).unwrap()
 }
 
-/// All that is asked about a pair says that it overlaps by about a depth, or is apart by that.
+/// Checks that all queries about a pair give about this depth, or this distance if it is negative.
 fn check(name: &str, a: &dyn Shape, b: &dyn Shape, pos12: &Pose, depth: f64) {
     let dispatcher = VpsDispatcher::default();
     for (pose, a, b, order) in [(*pos12, a, b, "first"), (pos12.inverse(), b, a, "second")] {
@@ -135,7 +135,7 @@ fn shapes_of_parry_within_are_found_and_hold_what_is_within_them() {
     for (name, shape) in &small {
         check(name, &block, &**shape, &pos12, 0.26);
     }
-    // Smooth and large beside the distance of the points.
+    // Smooth, and large beside the spacing of the points.
     let fine = vps(&cube(1.0), 10_000);
     let (vertices, indices) = triangles(&Mesh::icosphere(0.3, 2).unwrap());
     let smooth = mesh_of(&vertices, &indices);
@@ -194,7 +194,7 @@ fn in_a_cavity_there_is_no_contact() {
     }
 }
 
-/// Started five radii deep in a block, balls come out at the closest face, and stay there.
+/// Balls that start five radii deep in a block leave it at the closest face, and stay there.
 #[test]
 fn a_body_is_pushed_out_of_the_one_it_is_in() {
     let radius = 0.03;

@@ -12,7 +12,7 @@ use vps_core::DistanceField;
 use vps_core::conformance::check;
 use vps_rapier::{Role, Sampling, ShapeField, VpsDispatcher, VpsShape, narrow_phase};
 
-/// A thick L: not convex, and its hull would stand differently.
+/// A thick L. It is not convex, and its hull would stand differently.
 fn angle_bracket() -> Mesh {
     let outline = [
         (0.0, 0.0),
@@ -90,7 +90,7 @@ fn a_bracket_falls_and_comes_to_rest_on_every_kind_of_ground() {
             .rotation(Vector::new(1.3, 0.2, 0.1))
             .can_sleep(false);
         let (body, _) = world.insert(start, shape(bracket.clone()));
-        // Every step asks for contacts, so that none is kept still by old ones.
+        // Every step searches for contacts, so that none is held by old ones.
         world.integration_parameters.contact_recycling = false;
         for _ in 0..360 {
             world.step();
@@ -203,7 +203,7 @@ fn queries_agree_with_parry_in_both_orders() {
                         .unwrap()
                         .unwrap()
                         .dist;
-                // Deeper, the depth of points and the way out of an overlap are two things.
+                // Deeper, the penetration of points differs from the translation that separates.
                 if expected > -0.08 {
                     let off = (forward - expected).abs();
                     assert!(
@@ -233,7 +233,7 @@ fn rays_points_and_casts_meet_the_surface() {
         match (hit, expected) {
             (Some(hit), Some(expected)) => {
                 let off = (hit.time_of_impact - expected.time_of_impact).abs();
-                // Edges of a sampled box are round, a grazing ray meets them late.
+                // The edges of a sampled box are round, so a grazing ray meets them late.
                 let grazing = hit.normal.dot(-ray.dir) < 0.5 || hit.normal.max_element() < 0.99;
                 assert!(off < tolerance || grazing, "{hit:?} {expected:?}");
             }
@@ -270,7 +270,7 @@ fn rays_points_and_casts_meet_the_surface() {
     assert!((hit.time_of_impact - 1.5 / 4.0).abs() < 1e-3, "{hit:?}");
 }
 
-/// Numbers in 0..1 that are all over the place.
+/// Pseudorandom numbers in 0..1.
 fn scattered() -> impl FnMut() -> f32 {
     let mut n = 0_u32;
     move || {

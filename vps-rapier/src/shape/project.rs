@@ -1,25 +1,24 @@
-//! The closest point of the surface of a VPS shape.
+//! Projection of points on the surface of a VPS shape.
 
 use rapier3d::math::Vector;
 use rapier3d::parry::query::{PointProjection, PointQuery};
 use rapier3d::parry::shape::FeatureId;
-use vps_core::{Aabb, DistanceField, LANES, Points, Trilinear, Vec3};
+use vps_core::{Aabb, Ball, DistanceField, LANES, Points, Pose3, Query, Trilinear, Vec3};
 
 use super::VpsShape;
-use crate::real::{core_vector, vector};
-use crate::surroundings::nearest_of_shell;
+use crate::precision::{core_vector, vector};
 
-/// By how many voxels a point may be further than another one and is as good.
-const AS_GOOD: f32 = 0.25;
+/// Distance in voxels by which a projection may be further away than the closest point.
+const TOLERANCE: f32 = 0.25;
 
-/// How close to the surface a point on it is, in voxels.
+/// Distance from the surface in voxels up to which a point counts as on it.
 const ON_SURFACE: f32 = 0.01;
 
-/// Newton steps to the surface at most.
-const NEWTON_STEPS: usize = 8;
+/// Most Newton steps to the surface.
+const MAX_NEWTON_STEPS: usize = 8;
 
-/// Steps along the surface at most.
-const SLIDES: usize = 24;
+/// Most steps along the surface.
+const MAX_SLIDES: usize = 24;
 
 impl PointQuery for VpsShape {
     /// The closest point to within a voxel, however far away.
@@ -28,7 +27,7 @@ impl PointQuery for VpsShape {
         if solid && is_inside || !point.is_finite() {
             return PointProjection::new(is_inside, point);
         }
-        let closest = Search::new(self, point).closest();
+        let closest = Projection::new(self, point).closest();
         PointProjection::new(is_inside, vector(closest))
     }
 
@@ -43,35 +42,47 @@ impl PointQuery for VpsShape {
 }
 
 impl VpsShape {
-    /// The closest point of the surface.
-    pub(crate) fn closest_on_surface(&self, place: Vec3) -> Vec3 {
-        Search::new(self, vector(place)).closest()
+    /// The closest point of the surface, to within a voxel.
+    pub(crate) fn closest_on_surface(&self, point: Vec3) -> Vec3 {
+        Projection::new(self, vector(point)).closest()
+    }
+
+    /// The closest point of the shell; `None` for a point that is not finite.
+    pub(crate) fn nearest_of_shell(&self, point: Vec3) -> Option<Vec3> {
+        let origin = Ball::new(f32::MIN_POSITIVE);
+        let pose = Pose3::from_translation(-point);
+        let query = Query::new(&self.asset().tree, &origin, pose);
+        query.closest().map(|contact| contact.position)
     }
 }
 
-/// Branch and bound: the box of the surface is cut in eight again and again, down to voxels. Parts are
-/// left out that have no point closer than the best one by as much as matters, or no surface in them.
-struct Search<'s> {
+/// The search for the closest point of the surface. Points of the shell and Newton steps along the
+/// gradient give a candidate. Unless the field shows that it is the closest, branch and bound divides
+/// the box of the surface into octants down to voxels, and leaves out those without a zero of the
+/// field, and those without a point that is closer than the candidate by more than [`TOLERANCE`].
+struct Projection<'s> {
     shape: &'s VpsShape,
     field: Trilinear<'s>,
-    size: f32,
-    /// Where all of the surface is.
+    voxel_size: f32,
+    /// A box that holds the whole surface.
     bounds: Aabb,
-    /// Places are taken from here, so that they can be told apart from far away.
+    /// Distances are computed relative to here, so that rounding does not hide their differences when
+    /// the point is far away.
     middle: Vec3,
-    /// From there to the point that is to be projected.
+    /// From `middle` to the point to project.
     to_point: Vec3,
     best: Option<Vec3>,
 }
 
 /// A cube that may hold a part of the surface.
-struct Part {
+struct Octant {
     center: Vec3,
     half: f32,
-    least: f32,
+    /// Lower bound of the relative squared distance of its points.
+    lower_bound: f32,
 }
 
-impl<'s> Search<'s> {
+impl<'s> Projection<'s> {
     fn new(shape: &'s VpsShape, point: Vector) -> Self {
         let field = shape.asset().voxelmap.trilinear();
         let bounds = shape.surface_bounds();
@@ -79,7 +90,7 @@ impl<'s> Search<'s> {
         Self {
             shape,
             field,
-            size: field.voxel_size(),
+            voxel_size: field.voxel_size(),
             bounds,
             middle,
             to_point: core_vector(point - vector(middle)),
@@ -89,9 +100,9 @@ impl<'s> Search<'s> {
 
     fn closest(mut self) -> Vec3 {
         let point = self.middle + self.to_point;
-        // A point of the surface itself, and never far from the closest.
-        if let Some(nearest) = nearest_of_shell(self.shape, point) {
-            self.offer(nearest);
+        // A point of the shell lies on the surface, and never far from the closest point.
+        if let Some(nearest) = self.shape.nearest_of_shell(point) {
+            self.add(nearest);
             self.slide(nearest);
         }
         self.slide(self.bounds.clamp(point));
@@ -101,125 +112,129 @@ impl<'s> Search<'s> {
         self.best.unwrap_or(self.middle)
     }
 
-    /// Whether the field itself says that there is nothing closer.
+    /// Whether the field shows that no point of the surface is closer than the best.
     fn is_closest(&self, point: Vec3) -> bool {
         let map = &self.shape.asset().voxelmap;
         let (depth, accuracy) = (
             self.field.penetration(point, Vec3::ZERO).abs(),
             map.accuracy(),
         );
-        // Further away it may be wrong by more than matters.
-        depth + 2.0 * self.size <= accuracy.band_m
+        // Beyond the narrow band the error of the field exceeds the tolerance.
+        depth + 2.0 * self.voxel_size <= accuracy.band_m
             && self
                 .best
-                .is_some_and(|best| best.distance(point) <= depth + AS_GOOD * self.size)
+                .is_some_and(|best| best.distance(point) <= depth + TOLERANCE * self.voxel_size)
     }
 
-    /// How far a place is, as a number that grows with its distance: the squared distance less that of
-    /// the middle.
-    fn far(&self, place: Vec3) -> f32 {
-        let place = place - self.middle;
-        place.length_squared() - 2.0 * place.dot(self.to_point)
+    /// The squared distance of a candidate from the point, less that of the middle.
+    fn relative_squared(&self, candidate: Vec3) -> f32 {
+        let offset = candidate - self.middle;
+        offset.length_squared() - 2.0 * offset.dot(self.to_point)
     }
 
-    fn offer(&mut self, place: Vec3) {
-        if self
-            .best
-            .is_none_or(|best| self.far(place) < self.far(best))
-        {
-            self.best = Some(place);
+    fn is_closer(&self, candidate: Vec3) -> bool {
+        self.best
+            .is_none_or(|best| self.relative_squared(candidate) < self.relative_squared(best))
+    }
+
+    fn add(&mut self, candidate: Vec3) {
+        if self.is_closer(candidate) {
+            self.best = Some(candidate);
         }
     }
 
-    /// What is no closer than this is no better than the best.
-    fn enough(&self) -> f32 {
+    /// Candidates with a relative squared distance of at least this do not improve on the best by more
+    /// than the tolerance.
+    fn threshold(&self) -> f32 {
         self.best.map_or(f32::INFINITY, |best| {
-            let by = AS_GOOD * self.size;
+            let tolerance = TOLERANCE * self.voxel_size;
             let distance = (self.to_point - (best - self.middle)).length();
-            self.far(best) - by * (2.0 * distance - by)
+            self.relative_squared(best) - tolerance * (2.0 * distance - tolerance)
         })
     }
 
-    /// Where the gradient of the field leads from a place, if it leads to the surface.
-    fn on_surface(&self, mut place: Vec3) -> Option<Vec3> {
-        for _ in 0..NEWTON_STEPS {
-            let penetration = self.field.penetration(place, Vec3::ZERO);
-            if penetration.abs() < ON_SURFACE * self.size {
-                return Some(place);
+    /// The point of the surface that Newton steps along the gradient lead to, if they converge.
+    fn on_surface(&self, mut point: Vec3) -> Option<Vec3> {
+        for _ in 0..MAX_NEWTON_STEPS {
+            let penetration = self.field.penetration(point, Vec3::ZERO);
+            if penetration.abs() < ON_SURFACE * self.voxel_size {
+                return Some(point);
             }
-            place -= self.field.inward_direction(place) * penetration;
+            point -= self.field.inward_direction(point) * penetration;
         }
         None
     }
 
-    /// From a place to the surface, and along it as long as that comes closer.
+    /// Descends from a point to the surface, and along it as long as that reduces the distance.
     fn slide(&mut self, from: Vec3) {
-        let Some(mut place) = self.on_surface(from) else {
+        let Some(mut current) = self.on_surface(from) else {
             return;
         };
-        let mut reach = 4.0 * self.size;
-        for _ in 0..SLIDES {
-            let normal = self.field.inward_direction(place);
-            let way = self.to_point - (place - self.middle);
-            let along = (way - normal * way.dot(normal)).clamp_length_max(reach);
-            if along.length() < 0.1 * self.size {
+        let mut reach = 4.0 * self.voxel_size;
+        for _ in 0..MAX_SLIDES {
+            let normal = self.field.inward_direction(current);
+            let to_point = self.to_point - (current - self.middle);
+            let tangent = to_point - normal * to_point.dot(normal);
+            let along = tangent.clamp_length_max(reach);
+            if along.length() < 0.1 * self.voxel_size {
                 break;
             }
-            match self.on_surface(place + along) {
-                Some(next) if self.far(next) < self.far(place) => place = next,
+            match self.on_surface(current + along) {
+                Some(next) if self.relative_squared(next) < self.relative_squared(current) => {
+                    current = next;
+                }
                 _ => reach = 0.5 * along.length(),
             }
         }
-        self.offer(place);
+        self.add(current);
     }
 
+    /// Branch and bound over octants.
     fn search(&mut self) {
         let longest = self.bounds.extents().max_element();
-        let mut half = 0.5 * self.size;
+        let mut half = 0.5 * self.voxel_size;
         while 2.0 * half < longest {
             half *= 2.0;
         }
-        let all = Part {
+        let all = Octant {
             center: self.bounds.min + half,
             half,
-            least: f32::NEG_INFINITY,
+            lower_bound: f32::NEG_INFINITY,
         };
-        let mut parts = vec![all];
-        while let Some(part) = parts.pop() {
-            if part.least >= self.enough() {
+        let mut stack = vec![all];
+        while let Some(octant) = stack.pop() {
+            if octant.lower_bound >= self.threshold() {
                 continue;
             }
-            if part.half < self.size {
-                self.look_at(&part);
+            if octant.half < self.voxel_size {
+                self.refine(&octant);
                 continue;
             }
-            let first = parts.len();
-            self.halve(&part, &mut parts);
-            // The closest one on top.
-            parts[first..].sort_unstable_by(|a, b| b.least.total_cmp(&a.least));
+            let first = stack.len();
+            self.subdivide(&octant, &mut stack);
+            // The closest octant goes on top.
+            stack[first..].sort_unstable_by(|a, b| b.lower_bound.total_cmp(&a.lower_bound));
         }
     }
 
-    /// The surface in a part of the size of a voxel.
-    fn look_at(&mut self, part: &Part) {
+    /// Adds the surface in an octant of the size of a voxel.
+    fn refine(&mut self, octant: &Octant) {
         let point = self.middle + self.to_point;
-        let closest = part.bounds().clamp(point);
-        if let Some(place) = self.on_surface(closest)
-            && self
-                .best
-                .is_none_or(|best| self.far(place) < self.far(best))
+        let closest = octant.bounds().clamp(point);
+        if let Some(candidate) = self.on_surface(closest)
+            && self.is_closer(candidate)
         {
-            self.slide(place);
+            self.slide(candidate);
         }
     }
 
-    /// The eighths of a part that may hold something closer than the best.
-    fn halve(&self, part: &Part, parts: &mut Vec<Part>) {
-        let half = 0.5 * part.half;
-        let (enough, radius) = (self.enough(), half * 3.0_f32.sqrt());
+    /// Pushes the octants of an octant that may hold a point closer than the threshold.
+    fn subdivide(&self, octant: &Octant, stack: &mut Vec<Octant>) {
+        let half = 0.5 * octant.half;
+        let (threshold, radius) = (self.threshold(), half * 3.0_f32.sqrt());
         let side = |i: usize, axis: usize| if i >> axis & 1 == 1 { half } else { -half };
         for first in [0, LANES] {
-            let mut centers = Points::splat(part.center);
+            let mut centers = Points::splat(octant.center);
             for lane in 0..LANES {
                 centers.x[lane] += side(first + lane, 0);
                 centers.y[lane] += side(first + lane, 1);
@@ -228,27 +243,27 @@ impl<'s> Search<'s> {
             let penetrations = self.field.penetrations(&centers, &centers);
             for (lane, penetration) in penetrations.into_iter().enumerate() {
                 let center = centers.get(lane);
-                let mut eighth = Part {
+                let mut child = Octant {
                     center,
                     half,
-                    least: 0.0,
+                    lower_bound: 0.0,
                 };
-                let bounds = eighth.bounds();
+                let bounds = child.bounds();
                 let is_out = bounds.min.cmpgt(self.bounds.max).any();
                 if is_out || self.field.sign_radius(penetration) > radius {
                     continue;
                 }
                 let closest = bounds.clamp(self.middle + self.to_point);
-                eighth.least = self.far(self.bounds.clamp(closest));
-                if eighth.least < enough {
-                    parts.push(eighth);
+                child.lower_bound = self.relative_squared(self.bounds.clamp(closest));
+                if child.lower_bound < threshold {
+                    stack.push(child);
                 }
             }
         }
     }
 }
 
-impl Part {
+impl Octant {
     fn bounds(&self) -> Aabb {
         Aabb {
             min: self.center - self.half,

@@ -1,4 +1,4 @@
-//! Rays at a VPS shape.
+//! Rays cast at a VPS shape.
 
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::query::{Ray, RayCast, RayIntersection};
@@ -6,15 +6,15 @@ use rapier3d::parry::shape::FeatureId;
 use vps_core::{Aabb, DistanceField, LANES, Points, Trilinear, Vec3};
 
 use super::VpsShape;
-use crate::real::{core_real, core_vector, real, vector};
+use crate::precision::{core_real, core_vector, real, vector};
 
-/// How often the piece of a ray in a voxel is halved at most to find where it crosses the surface.
-const HALVINGS: u32 = 12;
+/// Most bisections of the piece of a ray in a cell to find where it crosses the surface.
+const MAX_BISECTIONS: u32 = 12;
 
 impl RayCast for VpsShape {
-    /// The first place where the interpolated field changes its sign along the ray, found exactly:
-    /// what the field shows is not passed, however thin it is. From within, unless `solid`, that is
-    /// where the ray leaves. The normal is that of the side the ray comes from, against the ray.
+    /// The first point at which the interpolated field changes its sign along the ray. It is found
+    /// exactly: no wall in the field is passed, however thin it is. A ray from inside, unless `solid`,
+    /// hits where it leaves. The normal is out of the side the ray comes from, against the ray.
     fn cast_local_ray_and_get_normal(
         &self,
         ray: &Ray,
@@ -32,21 +32,21 @@ impl RayCast for VpsShape {
             return Some(RayIntersection::new(0.0, outward, FeatureId::Unknown));
         }
         let (direction, speed) = direction_and_speed(ray.dir)?;
-        let [enter, leave] = clipped(ray, &self.surface_bounds(), max_time_of_impact)?;
+        let [enter, leave] = clip_ray(ray, &self.surface_bounds(), max_time_of_impact)?;
         let path = Path {
             field,
             start: core_vector(ray.point_at(enter)),
             direction,
             side: if starts_inside { -1.0 } else { 1.0 },
         };
-        let way = path.first_crossing(core_real((leave - enter) * speed))?;
-        let time = (enter + real(way) / speed).min(max_time_of_impact);
-        let normal = vector(path.normal(way));
+        let distance = path.first_crossing(core_real((leave - enter) * speed))?;
+        let time = (enter + real(distance) / speed).min(max_time_of_impact);
+        let normal = vector(path.normal(distance));
         Some(RayIntersection::new(time, normal, FeatureId::Unknown))
     }
 }
 
-/// Of a vector however short or long; none if it is zero.
+/// The unit direction and the length of a vector, however short or long; `None` if it is zero.
 fn direction_and_speed(velocity: Vector) -> Option<(Vec3, Real)> {
     let largest = velocity.abs().max_element();
     if largest == 0.0 {
@@ -57,8 +57,8 @@ fn direction_and_speed(velocity: Vector) -> Option<(Vec3, Real)> {
     Some((core_vector(scaled / length), largest * length))
 }
 
-/// When the ray enters a box and leaves it, until a time.
-fn clipped(ray: &Ray, bounds: &Aabb, end: Real) -> Option<[Real; 2]> {
+/// The times at which the ray enters and leaves a box, up to `end`; `None` if it misses the box.
+fn clip_ray(ray: &Ray, bounds: &Aabb, end: Real) -> Option<[Real; 2]> {
     let (low, high) = (vector(bounds.min), vector(bounds.max));
     let (mut enter, mut leave): (Real, Real) = (0.0, end);
     for axis in 0..3 {
@@ -76,42 +76,42 @@ fn clipped(ray: &Ray, bounds: &Aabb, end: Real) -> Option<[Real; 2]> {
     (enter <= leave).then_some([enter, leave])
 }
 
-/// A straight way through the field, in metres.
+/// A straight path through the field, in metres.
 struct Path<'m> {
     field: Trilinear<'m>,
     start: Vec3,
     direction: Vec3,
-    /// 1 for a way that starts outside, -1 for one that starts inside.
+    /// 1 for a path that starts outside, -1 for one that starts inside.
     side: f32,
 }
 
 impl Path<'_> {
-    /// How far along the way the field changes its sign first, up to a length.
+    /// The distance along the path at which the field first changes its sign, up to `length`.
     fn first_crossing(&self, length: f32) -> Option<f32> {
         let size = self.field.voxel_size();
-        let mut way = 0.0;
-        while way <= length {
-            let at = self.start + self.direction * way;
+        let mut distance = 0.0;
+        while distance <= length {
+            let at = self.start + self.direction * distance;
             let penetration = self.field.penetration(at, Vec3::ZERO);
             let free = self.field.sign_radius(penetration);
             if free > size {
-                way += free;
+                distance += free;
                 continue;
             }
-            // Within a cell of eight voxel centres the field is a cubic along the way.
-            let least = (1e-3 * size).max(4.0 * f32::EPSILON * (at.abs().max_element() + way));
+            // In a cell of eight voxel centres the field is a cubic along the path.
+            let least = (1e-3 * size).max(4.0 * f32::EPSILON * (at.abs().max_element() + distance));
             let piece = self.to_next_cell(at).max(least);
-            let crossing = first_root(self.controls(at, piece), HALVINGS);
+            let crossing = first_root(self.controls(at, piece), MAX_BISECTIONS);
             if let Some(part) = crossing {
-                let crossing = way + part * piece;
+                let crossing = distance + part * piece;
                 return (crossing <= length).then_some(crossing);
             }
-            way += piece;
+            distance += piece;
         }
         None
     }
 
-    /// How far it is to the next plane of voxel centres.
+    /// Distance along the path to the next plane of voxel centres.
     fn to_next_cell(&self, at: Vec3) -> f32 {
         let grid = self.field.grid();
         let cells = (at - grid.origin()) / grid.voxel_size() - 0.5;
@@ -128,12 +128,13 @@ impl Path<'_> {
         along(0).min(along(1)).min(along(2)) * grid.voxel_size()
     }
 
-    /// The field along a piece of the way, positive beyond the surface, as a cubic in Bernstein form.
+    /// The control values of the field along a piece of the path, as a cubic in Bernstein form; positive
+    /// beyond the surface.
     fn controls(&self, at: Vec3, piece: f32) -> [f32; LANES] {
         let mut points = Points::splat(at);
         for lane in 0..LANES {
-            let on_way = at + self.direction * (piece * lane as f32 / 3.0);
-            (points.x[lane], points.y[lane], points.z[lane]) = on_way.into();
+            let on_path = at + self.direction * (piece * lane as f32 / 3.0);
+            (points.x[lane], points.y[lane], points.z[lane]) = on_path.into();
         }
         let [a, b, c, d] = self.field.penetrations(&points, &points);
         let inner =
@@ -141,10 +142,11 @@ impl Path<'_> {
         [a, inner(a, b, c, d), inner(d, c, b, a), d].map(|v| v * self.side)
     }
 
-    /// Out of the surface, against the way: by differences over a voxel in front of it.
-    fn normal(&self, way: f32) -> Vec3 {
+    /// The normal out of the surface, against the path, by central differences over a voxel in front of
+    /// it.
+    fn normal(&self, distance: f32) -> Vec3 {
         let half = 0.5 * self.field.voxel_size();
-        let before = self.start + self.direction * (way - half);
+        let before = self.start + self.direction * (distance - half);
         let [mut high, mut low] = [Points::splat(before); 2];
         high.x[0] += half;
         high.y[1] += half;
@@ -161,24 +163,24 @@ impl Path<'_> {
     }
 }
 
-/// Where in its piece, 0 to 1, a cubic in Bernstein form is first not negative: it is no higher than
-/// the highest of its controls.
-fn first_root([a, b, c, d]: [f32; 4], halvings: u32) -> Option<f32> {
+/// Where in its piece, 0 to 1, a cubic in Bernstein form is first not negative. It is nowhere higher
+/// than the highest of its control values.
+fn first_root([a, b, c, d]: [f32; 4], bisections: u32) -> Option<f32> {
     if a >= 0.0 {
         return Some(0.0);
     }
     if b < 0.0 && c < 0.0 && d < 0.0 {
         return None;
     }
-    if halvings == 0 {
+    if bisections == 0 {
         return (d >= 0.0).then_some(1.0);
     }
     let middle = |a: f32, b: f32| 0.5 * (a + b);
     let (ab, bc, cd) = (middle(a, b), middle(b, c), middle(c, d));
     let (abc, bcd) = (middle(ab, bc), middle(bc, cd));
     let half = middle(abc, bcd);
-    let first = first_root([a, ab, abc, half], halvings - 1).map(|t| 0.5 * t);
-    first.or_else(|| first_root([half, bcd, cd, d], halvings - 1).map(|t| 0.5 + 0.5 * t))
+    let first = first_root([a, ab, abc, half], bisections - 1).map(|t| 0.5 * t);
+    first.or_else(|| first_root([half, bcd, cd, d], bisections - 1).map(|t| 0.5 + 0.5 * t))
 }
 
 #[cfg(test)]
@@ -202,7 +204,7 @@ mod tests {
             let controls = [-random().abs() - 1e-3, random(), random(), random()];
             let mut steps = (0..=4096).map(|i| i as f32 / 4096.0);
             let first = steps.find(|&t| cubic(controls, t) >= 0.0);
-            match (first_root(controls, HALVINGS), first) {
+            match (first_root(controls, MAX_BISECTIONS), first) {
                 (found, Some(first)) => assert!((found.unwrap() - first).abs() < 1e-3),
                 (Some(found), None) => assert!(cubic(controls, found) > -1e-3),
                 (None, None) => {}

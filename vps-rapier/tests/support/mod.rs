@@ -1,4 +1,4 @@
-//! What tests of worlds and pairs are made of.
+//! Assets and states shared by the tests.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub(crate) fn asset(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
 /// All bits of the state of all bodies.
 // Numbers of rapier are 32-bit or 64-bit.
 #[allow(clippy::useless_conversion)]
-#[allow(dead_code)] // Not by every test.
+#[allow(dead_code)] // Not every test uses it.
 pub(crate) fn state(world: &PhysicsWorld) -> Vec<u64> {
     let mut bits = Vec::new();
     for (_, body) in world.bodies.iter() {

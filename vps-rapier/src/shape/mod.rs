@@ -1,3 +1,6 @@
+//! The collision shape: an asset as a shape of parry, where it comes from, and what can be asked of it
+//! alone.
+
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -7,29 +10,32 @@ use rapier3d::parry::mass_properties::MassProperties;
 use rapier3d::parry::shape::{PolygonalFeatureMap, Shape, ShapeType, SharedShape, TypedShape};
 use vps_core::{Aabb, Asset, SurfaceMesh, Vec3};
 
-use crate::check::asked_for_faces;
-use crate::real::{core_real, core_vector, real, vector};
-use crate::thickness::thickness;
+use self::thickness::thickness;
+use crate::connection::warn_if_disconnected;
+use crate::precision::{core_real, core_vector, real, vector};
 
+#[cfg(feature = "build")]
+pub(crate) mod builder;
 mod project;
 mod ray;
+mod thickness;
 
-/// What a shape is in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell, and
-/// the field of the other's edges.
+/// The role of a shape in a pair of VPS shapes (Fig. 5). Against a shape of parry it is the shell, and
+/// its field is asked about the edges of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Role {
-    /// The field, if the other is not that rather.
+    /// The field. Of two such shapes, the one whose points are further apart.
     Voxelmap,
-    /// The shell if its points are closer together than the other's, and the field too if the other is
-    /// thinner somewhere than twice their spacing. (Section 3.2 takes the shell of fewer points: faster,
-    /// but a small body on a large one is then met by few points.)
+    /// The shell if its points are closer together than the other's, and also the field if the other is
+    /// somewhere thinner than twice their spacing. (Section 3.2 takes the shell of fewer points. That is
+    /// faster, but few points of a large body meet a small one.)
     #[default]
     Mixed,
-    /// The shell, if the other is not that rather.
+    /// The shell. Of two such shapes, the one whose points are closer together.
     Pointshell,
-    /// Shell and field, always: what only one of two shells shows is not missed, for about twice
-    /// the time.
+    /// Always both shell and field: contacts that only one of the two shells shows are found, for about
+    /// twice the time.
     Both,
 }
 
@@ -46,16 +52,15 @@ pub struct VpsShape {
     surface: Arc<OnceLock<SurfaceMesh>>,
 }
 
-/// How many times its spacing squared a point of a shell covers, about.
-const COVERED: f32 = 1.5;
+/// Area a point of a shell covers, in squares of the spacing of the points.
+const AREA_PER_POINT: f32 = 1.5;
 
 impl VpsShape {
-    /// A shape of an asset, shell or field as fits the pair. Takes some milliseconds to see how thick
-    /// it is.
+    /// A shape of an asset with the default [`Role`]. Takes some milliseconds to measure its thickness.
     pub fn new(asset: Arc<Asset<'static>>) -> Self {
         let areas = asset.tree.areas();
         let area: f32 = areas.iter().sum();
-        let spacing = (area / (COVERED * areas.len() as f32)).sqrt();
+        let spacing = (area / (AREA_PER_POINT * areas.len() as f32)).sqrt();
         Self {
             thickness: thickness(&asset),
             asset,
@@ -66,25 +71,25 @@ impl VpsShape {
         }
     }
 
-    /// The surface as a mesh to look at, where the field is zero; made when it is first asked for, and
-    /// shared by clones.
+    /// The zero level of the field as a mesh, for display. It is made at the first call and shared by
+    /// clones.
     pub fn surface_mesh(&self) -> &SurfaceMesh {
         self.surface
             .get_or_init(|| self.asset.voxelmap.surface_mesh())
     }
 
-    /// How far the points of the shell are apart in metres, about.
+    /// Approximate spacing of the points of the shell in metres.
     pub fn spacing(&self) -> f32 {
         self.spacing
     }
 
-    /// How thick the solid is in metres, but for the thinnest parts: along the normals of all but a
-    /// twentieth of its points.
+    /// Thickness of the solid in metres: all but a twentieth of the points measure at least that along
+    /// their normals.
     pub fn thickness(&self) -> f32 {
         self.thickness
     }
 
-    /// The same shape, its asset being the one in a file.
+    /// The same shape, which remembers the file of its asset.
     #[cfg(feature = "build")]
     pub(crate) fn in_file(self, file: &Path) -> Self {
         Self {
@@ -93,40 +98,40 @@ impl VpsShape {
         }
     }
 
-    /// The file its asset is in, if it is known.
+    /// The file of its asset, if it is known.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
-    /// The same shape with a preference for what it is in a pair.
+    /// The same shape with another preferred role.
     pub fn with_role(self, role: Role) -> Self {
         Self { role, ..self }
     }
 
-    /// What the shape was made from.
+    /// The asset the shape was made from.
     pub fn asset(&self) -> &Asset<'static> {
         &self.asset
     }
 
-    /// What the shape prefers to be in a pair.
+    /// The preferred role in a pair of VPS shapes.
     pub fn role(&self) -> Role {
         self.role
     }
 
-    /// Whether a place is where values are stored.
-    pub(crate) fn has_in_grid(&self, place: Vec3) -> bool {
-        self.asset.voxelmap.grid().bounds().contains(place)
+    /// Whether a point lies in the grid of the voxelmap, where values are stored.
+    pub(crate) fn has_in_grid(&self, point: Vec3) -> bool {
+        self.asset.voxelmap.grid().bounds().contains(point)
     }
 
-    /// A box that holds all places where the field changes its sign, within the grid.
+    /// A box within the grid that holds all zeros of the field.
     fn surface_bounds(&self) -> Aabb {
         let map = &self.asset.voxelmap;
         let (grid, solid, size) = (map.grid().bounds(), map.solid(), map.grid().voxel_size());
-        // Between voxels the surface may be this far from where it is.
-        let around = 2.0 * size;
+        // Interpolation between voxels may move the surface by this much.
+        let padding = 2.0 * size;
         Aabb {
-            min: (solid.min - around).max(grid.min + 0.5 * size),
-            max: (solid.max + around).min(grid.max - 0.5 * size),
+            min: (solid.min - padding).max(grid.min + 0.5 * size),
+            max: (solid.max + padding).min(grid.max - 0.5 * size),
         }
     }
 }
@@ -153,8 +158,8 @@ impl Shape for VpsShape {
         Box::new(self.clone())
     }
 
-    /// By the same positive factor along all axes, which copies the asset; `None` for other scales:
-    /// a stretched mesh has other distances, build an asset of it.
+    /// Scales by the same positive factor along all axes, which copies the asset. `None` for other
+    /// scales: a stretched mesh has other distances and needs an asset of its own.
     fn scale_dyn(&self, scale: Vector, _subdivisions: u32) -> Option<Box<dyn Shape>> {
         let scale = core_vector(scale);
         let is_uniform = scale.max_element() - scale.min_element() <= 1e-6 * scale.x.abs();
@@ -178,9 +183,9 @@ impl Shape for VpsShape {
         TypedShape::Custom(self)
     }
 
-    /// None: only parry's own dispatcher asks for them, where it finds no contacts.
+    /// `None`. Only parry's own dispatcher asks for it, and then finds no contacts.
     fn as_polygonal_feature_map(&self) -> Option<(&dyn PolygonalFeatureMap, Real)> {
-        asked_for_faces();
+        warn_if_disconnected();
         None
     }
 

@@ -1,3 +1,5 @@
+//! Shapes from meshes and from files.
+
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -8,9 +10,9 @@ use vps_build::{
     read_asset, read_mesh,
 };
 
-use crate::{Role, VpsShape};
+use crate::shape::{Role, VpsShape};
 
-/// Makes a [`VpsShape`] of a mesh.
+/// Builds a [`VpsShape`] from a mesh.
 ///
 /// ```
 /// # use vps_rapier::rapier3d::prelude::*;
@@ -29,13 +31,13 @@ pub struct VpsShapeBuilder {
     role: Role,
 }
 
-/// Why there is no shape.
+/// Why a shape could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ShapeError {
-    /// The triangles are no mesh.
+    /// The triangles are not a valid mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The file of a mesh cannot be read.
+    /// A mesh file cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The mesh cannot be built.
@@ -47,10 +49,10 @@ pub enum ShapeError {
          it to its origin, and its collider to where it was"
     )]
     Far(f64, f64, f64),
-    /// A file of an asset cannot be read or written.
+    /// An asset file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// What was saved with a world is not a sound asset.
+    /// An asset saved with a world is not valid.
     #[error("an asset saved with a world: {0}")]
     Asset(#[from] vps_core::FormatError),
 }
@@ -65,7 +67,7 @@ impl From<CacheError> for ShapeError {
 }
 
 impl VpsShapeBuilder {
-    /// Of a mesh in metres.
+    /// From a mesh in metres.
     pub fn new(mesh: Mesh) -> Self {
         Self {
             mesh,
@@ -75,17 +77,17 @@ impl VpsShapeBuilder {
         }
     }
 
-    /// Of triangles over vertices in metres, counter-clockwise seen from outside.
+    /// From triangles over vertices in metres, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// When they are no mesh.
+    /// When they are not a valid mesh.
     pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
         let position = |v: &Vector| v.to_array().map(f64::from).into();
         let vertices: Vec<_> = vertices.iter().map(position).collect();
         Ok(Self::new(Mesh::new(&vertices, triangles)?))
     }
 
-    /// Of an OBJ, PLY, STL or OFF file in metres; `object` is the name of the one to take of several.
+    /// From an OBJ, PLY, STL or OFF file in metres; `object` names one of several objects in it.
     ///
     /// # Errors
     /// When it cannot be read.
@@ -93,17 +95,17 @@ impl VpsShapeBuilder {
         Ok(Self::new(read_mesh(path, object)?))
     }
 
-    /// With another resolution, another number of points, and so on.
+    /// Sets the resolution, the number of points and further options.
     pub fn options(self, options: BuildOptions) -> Self {
         Self { options, ..self }
     }
 
-    /// With another preference for what it is in a pair.
+    /// Sets the preferred role in a pair of VPS shapes.
     pub fn role(self, role: Role) -> Self {
         Self { role, ..self }
     }
 
-    /// Kept in a folder by its content: the same mesh with the same options is built once.
+    /// Caches the asset in a folder by content: the same mesh with the same options is built once.
     pub fn cached_in(self, folder: &Path) -> Self {
         Self {
             cache: Some(AssetCache::new(folder)),
@@ -111,7 +113,7 @@ impl VpsShapeBuilder {
         }
     }
 
-    /// Builds the shape, on all cores; seconds for a fine mesh.
+    /// Builds the shape, on all cores. Takes seconds for a fine mesh.
     ///
     /// # Errors
     /// When the mesh cannot be built with these options, lies far from its origin, or the cache cannot
@@ -146,7 +148,7 @@ impl ShapeInBackground {
         self.0.is_finished()
     }
 
-    /// The shape, as soon as it is there.
+    /// Waits for the shape.
     ///
     /// # Errors
     /// Those of [`VpsShapeBuilder::build`].
@@ -163,7 +165,7 @@ impl VpsShape {
     /// the mesh.
     ///
     /// # Errors
-    /// When it cannot be read or is not a sound asset.
+    /// When the file cannot be read or is not a valid asset.
     pub fn from_file(path: &Path) -> Result<Self, ShapeError> {
         Ok(Self::new(Arc::new(read_asset(path)?)).in_file(path))
     }

@@ -1,29 +1,32 @@
+//! The field of any shape of parry, which is public.
+
+use rapier3d::math::Pose;
 use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::{Shape, Triangle, TypedShape};
+use rapier3d::parry::shape::{Shape, SharedShape, Triangle, TypedShape};
 use vps_core::{Aabb, Discs, DistanceField, LANES, Pose3, Vec3};
 
-use crate::real::{core_pose, core_real, core_vector, vector};
-use crate::surface::Surface;
-use crate::surface_field::SurfaceField;
+use super::bounds::{gap, shape_bounds, transformed};
+use super::surface::Surface;
+use super::surface_field::SurfaceField;
+use crate::precision::{core_pose, core_real, core_vector, vector};
 
 /// Any shape of parry as a distance field.
 ///
-/// Points are projected on its surface, as exactly and as fast as parry does it; the triangles of
-/// meshes and height fields are looked at one by one.
+/// Points are projected on its surface, as exactly and as fast as parry does it. For meshes and height
+/// fields the closest triangle is searched for.
 /// * **Solids** (all convex shapes, triangle meshes with
 ///   [`TriMeshFlags::ORIENTED`](rapier3d::parry::shape::TriMeshFlags::ORIENTED)) have the interior
 ///   parry gives them.
-/// * **Compounds** are as deep as the deepest of their parts.
-/// * **Open surfaces** (other triangle meshes, height fields, triangles) are taken as the skin of
-///   something `thickness` metres thick behind the side their triangles face, and end at their
-///   border.
-/// * **Segments and polylines** have penetration 0 at the most, and single **voxels** are not
-///   joined: a point has the depth it has in its own voxel.
+/// * **Compounds** have the penetration of the part in which a point is deepest.
+/// * **Open surfaces** (other triangle meshes, height fields, triangles) are the skin of a solid
+///   `thickness` metres thick behind the side their triangles face, and end at their border.
+/// * **Segments and polylines** have a penetration of at most 0.
+/// * **Voxels** are not joined: a point has its depth in its own voxel.
 pub struct ShapeField<'s> {
     kind: Kind<'s>,
     bounds: Aabb,
     error: f32,
-    is_all: bool,
+    is_complete: bool,
 }
 
 enum Kind<'s> {
@@ -35,20 +38,21 @@ enum Kind<'s> {
 }
 
 impl<'s> ShapeField<'s> {
-    /// The field of a shape, in the shape's frame; `thickness` is for open surfaces alone.
+    /// The field of a shape, in the shape's frame; `thickness` in metres matters to open surfaces
+    /// alone.
     pub fn new(shape: &'s dyn Shape, thickness: f32) -> Self {
-        let all = bounds(shape);
+        let all = shape_bounds(shape);
         Self::near(shape, thickness, all, f32::INFINITY)
     }
 
-    /// The same where no more of a compound, a mesh or a height field is taken than what is within
-    /// `reach` metres of `around`, a box in the shape's frame. It is the same field for points in that
-    /// box that are up to `reach` metres outside of the shape or inside of it, if `reach` is not less
-    /// than `thickness`; it is for points in that box alone.
-    pub fn near(shape: &'s dyn Shape, thickness: f32, around: Aabb, reach: f32) -> Self {
-        let all = bounds(shape);
-        let of_projection = error_of(shape);
-        let mut is_all = true;
+    /// The same field for points in the box `region`, in the shape's frame. Of compounds, meshes and
+    /// height fields only the parts within `reach` metres of the box are used. At points in the box up
+    /// to `reach` metres outside or inside of the shape the field is that of [`new`](Self::new), if
+    /// `reach` is not less than `thickness`.
+    pub fn near(shape: &'s dyn Shape, thickness: f32, region: Aabb, reach: f32) -> Self {
+        let all = shape_bounds(shape);
+        let projection_error = shape_error(shape);
+        let mut is_complete = true;
         let (kind, skin, error) = match (Surface::of(shape), shape.as_typed_shape()) {
             (Some(surface), _) => {
                 let skin = if surface.solid.is_some() {
@@ -56,20 +60,21 @@ impl<'s> ShapeField<'s> {
                 } else {
                     thickness
                 };
-                let field = SurfaceField::near(surface, thickness, around, reach);
+                let field = SurfaceField::near(surface, thickness, region, reach);
                 let error = field.error_bound();
-                is_all = field.is_all();
+                is_complete = field.is_complete();
                 (Kind::Surface(field), skin, error)
             }
             (None, TypedShape::Compound(compound)) => {
-                let part = |(pose, part): &'s (_, _)| {
-                    let (pose, part): (Pose3, &'s dyn Shape) = (core_pose(pose), shape_of(part));
-                    let around = moved(&around, &pose.inverse());
-                    let is_near = gap(&around, &bounds(part)) <= reach;
-                    is_near.then(|| (pose, Self::near(part, thickness, around, reach)))
+                let part = |(pose, part): &'s (Pose, SharedShape)| {
+                    let (pose, part): (_, &'s dyn Shape) = (core_pose(pose), &**part);
+                    let region = transformed(&region, &pose.inverse());
+                    let is_near = gap(&region, &shape_bounds(part)) <= reach;
+                    is_near.then(|| (pose, Self::near(part, thickness, region, reach)))
                 };
                 let parts: Vec<_> = compound.shapes().iter().filter_map(part).collect();
-                is_all = parts.len() == compound.shapes().len() && parts.iter().all(|p| p.1.is_all);
+                is_complete =
+                    parts.len() == compound.shapes().len() && parts.iter().all(|p| p.1.is_complete);
                 let errors = parts.iter().map(|(_, part)| part.error);
                 let error = errors.fold(0.0, f32::max);
                 (Kind::Compound(parts), thickness, error)
@@ -77,9 +82,9 @@ impl<'s> ShapeField<'s> {
             (None, TypedShape::Triangle(triangle)) => (
                 Kind::Triangle(triangle, thickness),
                 thickness,
-                of_projection,
+                projection_error,
             ),
-            _ => (Kind::Projected(shape), 0.0, of_projection),
+            _ => (Kind::Projected(shape), 0.0, projection_error),
         };
         Self {
             kind,
@@ -88,24 +93,24 @@ impl<'s> ShapeField<'s> {
                 max: all.max + skin,
             },
             error,
-            is_all,
+            is_complete,
         }
     }
 
-    /// Whether nothing was left out for being too far away.
-    pub(crate) fn is_all(&self) -> bool {
-        self.is_all
+    /// Whether no part was left out for its distance.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.is_complete
     }
 
     /// The direction in which penetration grows, if it is the same all over the box.
-    pub(crate) fn level_direction(&self) -> Option<Vec3> {
+    pub(crate) fn plane_direction(&self) -> Option<Vec3> {
         match &self.kind {
-            Kind::Surface(surface) => surface.level_direction(),
+            Kind::Surface(surface) => surface.plane_direction(),
             _ => None,
         }
     }
 
-    /// The penetration, and the direction in which it grows.
+    /// The penetration in metres, and the direction in which it grows.
     fn sample(&self, point: Vec3) -> (f32, Vec3) {
         let at = vector(point);
         let (projection, is_inside) = match &self.kind {
@@ -125,9 +130,9 @@ impl<'s> ShapeField<'s> {
             }
             Kind::Triangle(triangle, thickness) => {
                 let on_surface = triangle.project_local_point(at, false).point;
-                let away = at - on_surface;
-                let is_behind = away.dot(triangle.scaled_normal()) < 0.0;
-                let is_inside = is_behind && core_real(away.length()) <= *thickness;
+                let offset = at - on_surface;
+                let is_behind = offset.dot(triangle.scaled_normal()) < 0.0;
+                let is_inside = is_behind && core_real(offset.length()) <= *thickness;
                 (on_surface, is_inside)
             }
             Kind::Projected(shape) => {
@@ -145,24 +150,11 @@ impl<'s> ShapeField<'s> {
     }
 }
 
-/// A part of a compound.
-fn shape_of(part: &rapier3d::parry::shape::SharedShape) -> &dyn Shape {
-    &**part
-}
-
-fn bounds(shape: &dyn Shape) -> Aabb {
-    let aabb = shape.compute_local_aabb();
-    Aabb {
-        min: core_vector(aabb.mins),
-        max: core_vector(aabb.maxs),
-    }
-}
-
-/// What the field of a shape may be off, in metres: of parry's iterative projections a part in 10 000
-/// of the shape's size, of triangles rounding.
-pub(crate) fn error_of(shape: &dyn Shape) -> f32 {
+/// Error bound of the field of a shape in metres: 1e-4 of its size for parry's iterative projections,
+/// rounding for triangles.
+pub(crate) fn shape_error(shape: &dyn Shape) -> f32 {
     if Surface::of(shape).is_some() {
-        let all = bounds(shape);
+        let all = shape_bounds(shape);
         return 16.0 * f32::EPSILON * all.min.abs().max(all.max.abs()).max_element();
     }
     let radius = core_real(shape.compute_local_bounding_sphere().radius);
@@ -171,23 +163,6 @@ pub(crate) fn error_of(shape: &dyn Shape) -> f32 {
     } else {
         0.0
     }
-}
-
-/// What holds a box in another frame.
-pub(crate) fn moved(bounds: &Aabb, pose: &Pose3) -> Aabb {
-    let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (pose.rotation * axis).abs());
-    let half = 0.5 * bounds.extents();
-    let reach = axes[0] * half.x + axes[1] * half.y + axes[2] * half.z;
-    let center = pose.transform_point(bounds.center());
-    Aabb {
-        min: center - reach,
-        max: center + reach,
-    }
-}
-
-/// How far two boxes are apart along the axis where they are furthest apart.
-fn gap(a: &Aabb, b: &Aabb) -> f32 {
-    (a.min - b.max).max(b.min - a.max).max_element()
 }
 
 impl DistanceField for ShapeField<'_> {
@@ -211,14 +186,14 @@ impl DistanceField for ShapeField<'_> {
                 let bounds = parts.iter().map(|(pose, part)| {
                     part.penetration_bound(pose.inverse_transform_point(center), radius)
                 });
-                // What is in another frame is rounded once more.
+                // The transformation to the frame of a part adds rounding.
                 bounds.fold(f32::NEG_INFINITY, f32::max) + self.error
             }
             Kind::Surface(surface) => surface.penetration_bound(center, radius),
             Kind::Triangle(_, thickness) => {
                 let distance = self.sample(center).0.abs();
                 let reach = radius + self.error;
-                // Behind it the deepest point may be anywhere within its thickness.
+                // Behind the triangle, the deepest point may be anywhere within the thickness.
                 if distance - reach < *thickness {
                     (distance + reach).min(thickness + self.error)
                 } else {

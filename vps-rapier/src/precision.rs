@@ -1,8 +1,8 @@
-//! Between the numbers of a query, 32-bit, and those of rapier, 32-bit or 64-bit.
+//! Conversions between the numbers of a query, 32-bit, and those of rapier, 32-bit or 64-bit.
 //!
-//! A query is about the pose of one shape in the frame of the other, so that 32 bits are enough
-//! however far away from the origin of the world both are. The shapes themselves must lie near the
-//! origins of their own frames: the corners of a triangle mesh become 32-bit numbers.
+//! A query takes the pose of one shape in the frame of the other, so that 32 bits suffice however far
+//! both are from the origin of the world. The shapes themselves must lie near the origins of their own
+//! frames: the corners of a triangle mesh become 32-bit numbers.
 
 use rapier3d::math::{Pose, Real, Vector};
 use vps_core::{Pose3, Vec3};

@@ -1,0 +1,13 @@
+//! Queries about a pair of shapes, at least one of them a VPS shape.
+//!
+//! A [`pair`] is asked as up to two shells in fields ([`shell_in_field`]) and, against a shape of
+//! parry, also as points on the edges of that shape in the voxelmap ([`edge_sampler`], with the points
+//! of [`edges`]). All of them answer with [`pair_contact`]s. [`cast`] moves a pair along a [`motion`].
+
+pub(crate) mod cast;
+mod edge_sampler;
+mod edges;
+pub(crate) mod motion;
+pub(crate) mod pair;
+pub(crate) mod pair_contact;
+pub(crate) mod shell_in_field;

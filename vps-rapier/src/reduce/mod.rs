@@ -1,0 +1,98 @@
+//! Contact reduction: from all contacts of a pair to the few an engine gets, in one pipeline.
+//!
+//! For [`Manifolds::Spread`] the steps of [`contacts`] are:
+//! 1. Each shell gives the deepest contact and those that spread over the largest area, each sampled
+//!    edge its contact.
+//! 2. Contacts of several sources are reduced together ([`select`]).
+//! 3. Normals on which field and shell disagree are resolved ([`normals`]).
+//! 4. At most four contacts of each normal are kept ([`select`]).
+//! 5. The contacts of the step before stay if they are as good ([`persistence`]).
+//! 6. Deep inside, contacts that push against each other are turned to one direction
+//!    ([`deep_penetration`]).
+//!
+//! All constants of the pipeline are in [`parameters`].
+
+mod deep_penetration;
+mod normals;
+mod parameters;
+pub(crate) mod persistence;
+mod select;
+
+pub(crate) use normals::is_same_normal;
+
+use rapier3d::parry::shape::PackedFeatureId;
+use vps_core::Pose3;
+
+use self::deep_penetration::recover_deep_penetration;
+use self::normals::resolve_normals;
+use self::parameters::{MAX_CONTACTS, PERSISTENCE_TOLERANCE};
+use self::persistence::{re_evaluate, should_persist};
+use self::select::{limit_per_normal, reduce};
+use crate::query::pair::Pair;
+use crate::query::pair_contact::PairContact;
+
+/// Which contacts of a pair an engine gets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Manifolds {
+    /// The deepest contact and those that spread over the largest area (section 3.2), in one
+    /// manifold for each normal: four of each, eight in all.
+    #[default]
+    Spread,
+    /// The deepest contact of each segment of a level of the shell's tree (section 2.4), 1 being the
+    /// top, in a manifold of its own. Switch rapier's `contact_clustering` off, which would join them
+    /// again.
+    Segments(u32),
+}
+
+/// The contacts up to `prediction` metres away that an engine gets. `previous` are the ids of the
+/// contacts of the step before, and `motion` is how far the shapes have moved since, as in
+/// [`vps_core::Query::with_motion`].
+pub(crate) fn contacts(
+    pair: &Pair<'_>,
+    pos12: &Pose3,
+    prediction: f32,
+    motion: Option<f32>,
+    manifolds: Manifolds,
+    previous: &[[PackedFeatureId; 2]],
+) -> Vec<PairContact> {
+    let mut found = Vec::new();
+    for shell in pair.shells(pos12) {
+        match manifolds {
+            Manifolds::Spread => {
+                shell.manifold::<MAX_CONTACTS>(pos12, prediction, motion, previous, &mut found);
+            }
+            Manifolds::Segments(level) => shell.segments(pos12, prediction, level, &mut found),
+        }
+    }
+    let by_shells = found.len();
+    if let Some(edge_sampler) = pair.edge_sampler() {
+        edge_sampler.contacts(pos12, prediction, &mut found);
+    }
+    let has_edges = found.len() > by_shells;
+    match manifolds {
+        Manifolds::Spread => {
+            let mut persistent = re_evaluate(pair, pos12, previous, &found);
+            if has_edges || pair.secondary(pos12).is_some() {
+                reduce::<MAX_CONTACTS>(&mut found, prediction, motion);
+            }
+            for contacts in persistent.iter_mut().chain([&mut found]) {
+                resolve_normals(contacts, pos12);
+                limit_per_normal(contacts);
+            }
+            let tolerance = PERSISTENCE_TOLERANCE * pair.size_in_pose(pos12);
+            if let Some(persistent) = persistent
+                && should_persist(&persistent, &found, tolerance)
+            {
+                found = persistent;
+            }
+            recover_deep_penetration(pair, &mut found, pos12);
+        }
+        Manifolds::Segments(_) if has_edges => {
+            let mut by_edges = found.split_off(by_shells);
+            reduce::<MAX_CONTACTS>(&mut by_edges, prediction, motion);
+            found.extend(by_edges);
+        }
+        Manifolds::Segments(_) => {}
+    }
+    found
+}

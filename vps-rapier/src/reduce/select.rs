@@ -1,0 +1,51 @@
+//! The choice of a few contacts.
+
+use vps_core::{Contact, ContactManifold, Vec3};
+
+use super::normals::is_same_normal;
+use super::parameters::MAX_CONTACTS_PER_NORMAL;
+use crate::query::pair_contact::PairContact;
+
+/// Keeps at most `N` contacts: the deepest first, then those that spread over the largest area, seen
+/// along the normal of the deepest (section 3.2). `prediction` is the distance up to which they were
+/// searched for, and `motion` that of [`vps_core::Query::with_motion`].
+pub(super) fn reduce<const N: usize>(
+    contacts: &mut Vec<PairContact>,
+    prediction: f32,
+    motion: Option<f32>,
+) {
+    if contacts.len() <= 1 {
+        return;
+    }
+    let numbered = (0..).zip(&*contacts).map(|(point, c)| Contact {
+        point,
+        position: c.points[0],
+        normal: c.normals[0],
+        penetration: c.penetration,
+    });
+    let numbered: Vec<Contact> = numbered.collect();
+    let by_depth = |a: &Contact, b: &Contact| {
+        let order = a.penetration.total_cmp(&b.penetration);
+        order.then(b.point.cmp(&a.point))
+    };
+    let Some(deepest) = numbered.iter().copied().max_by(by_depth) else {
+        return;
+    };
+    let selected = ContactManifold::<N>::spread(&numbered, deepest.normal, prediction, motion);
+    let selected = selected.contacts().iter();
+    *contacts = selected.map(|c| contacts[c.point as usize]).collect();
+}
+
+/// Keeps the first [`MAX_CONTACTS_PER_NORMAL`] contacts of each normal.
+pub(super) fn limit_per_normal(contacts: &mut Vec<PairContact>) {
+    let mut groups: Vec<(Vec3, usize)> = Vec::with_capacity(contacts.len());
+    contacts.retain(|contact| {
+        let normal = contact.normals[0];
+        let Some((_, count)) = groups.iter_mut().find(|(n, _)| is_same_normal(*n, normal)) else {
+            groups.push((normal, 1));
+            return true;
+        };
+        *count += 1;
+        *count <= MAX_CONTACTS_PER_NORMAL
+    });
+}
