@@ -5,23 +5,26 @@ use vps_build::{BuildOptions, Mesh};
 use vps_core::Asset;
 use vps_rapier::{Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
 
-use crate::{CollisionAlgorithm, Ground, PrepareError, Prepared, Scene, Size, cuboid};
+use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithms::parry_pair::cuboid;
+use crate::prepared::{Prepared, Size};
+use crate::scene::{Ground, Scene};
 
-/// The pointshell of one in the field of the other.
+/// Voxelmap-Pointshell: the pointshell of one body in the field of the other.
 pub struct Vps<'s> {
-    /// How the body's asset is built.
+    /// Build options of the body's asset.
     pub body: BuildOptions,
-    /// What the ground is.
+    /// The kind of ground.
     pub ground: VpsGround,
     /// How a voxelmap is sampled.
     pub sampling: Sampling,
     /// Which contacts an engine gets.
     pub manifolds: Manifolds,
-    /// Where assets come from.
+    /// The source of assets.
     pub assets: &'s AssetSource<'s>,
 }
 
-/// Builds an asset, or fetches one that was built before; an error is one line of text.
+/// Builds an asset, or returns a cached one; an error is one line of text.
 pub type AssetSource<'s> = dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'static>>, String> + 's;
 
 /// The ground of [`Vps`].

@@ -1,4 +1,4 @@
-//! The two meshes, the poses, and what is true of them.
+//! The problem: two meshes, poses, and the exact penetrations.
 
 use std::path::Path;
 
@@ -10,30 +10,30 @@ use super::args::Args;
 use super::progress::Progress;
 use super::{Error, poses};
 
-/// All that is the same for all algorithms.
-pub(super) struct Setting {
+/// The inputs that all algorithms share.
+pub(super) struct Problem {
     pub(super) mesh_a: Mesh,
     pub(super) mesh_b: Mesh,
-    /// Whether each mesh was a solid as it stood.
+    /// Whether each mesh was a solid without repair.
     pub(super) watertight: [bool; 2],
-    /// Of random poses.
+    /// Spread of random poses.
     pub(super) spread_m: Option<f64>,
     pub(super) prediction_m: f64,
     pub(super) tolerance_m: f64,
-    /// Of B in the frame of A, with the exact penetration if neither is open.
+    /// Poses of B in the frame of A, with the exact penetration if neither mesh is open.
     pub(super) poses: Vec<(Pose, Option<Exact>)>,
-    /// How uncertain the exact penetration is where its search came to an end, in metres.
+    /// Uncertainty of the exact penetration if its search ended, in metres.
     pub(super) exact_tolerance_m: f64,
-    /// Whether A and B were left open, so that nothing is exact.
+    /// Whether A and B were left open, so that no penetration is exact.
     pub(super) is_open: [bool; 2],
 }
 
-/// Parts of the longest side of the smaller mesh.
+/// Defaults, relative to the longest side of the smaller mesh.
 const SPREAD: f64 = 0.05;
 const PREDICTION: f64 = 0.02;
 const TOLERANCE: f64 = 0.001;
 
-impl Setting {
+impl Problem {
     pub(super) fn of(args: &Args, progress: &Progress) -> Result<Self, Error> {
         let (mesh_a, mesh_b) = meshes(args)?;
         let read = args.poses.as_deref().map(poses::read).transpose()?;

@@ -1,8 +1,9 @@
-//! The triangles of a mesh in a tree of balls, which are the same from wherever they are seen.
+//! The triangles of a mesh in a tree of balls, which are invariant under rotation.
 
 use glamx::DVec3;
 use vps_build::Mesh;
 
+/// A binary tree of balls around triangles; the root is the first node.
 pub(super) struct BallTree {
     pub(super) nodes: Vec<Ball>,
 }
@@ -11,11 +12,12 @@ pub(super) struct BallTree {
 pub(super) struct Ball {
     pub(super) center: DVec3,
     pub(super) radius: f64,
-    pub(super) holds: Holds,
+    pub(super) contents: Contents,
 }
 
+/// A triangle, or two child nodes.
 #[derive(Clone, Copy)]
-pub(super) enum Holds {
+pub(super) enum Contents {
     Triangle(usize),
     Balls([usize; 2]),
 }
@@ -30,7 +32,7 @@ impl BallTree {
         tree
     }
 
-    /// Adds the triangles below one more ball, cut in halves across their longest direction.
+    /// Adds a ball around triangles, which are bisected across their longest direction.
     fn add(&mut self, mesh: &Mesh, triangles: &mut [usize]) -> usize {
         let corners = |&t: &usize| mesh.corners(t);
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -47,7 +49,7 @@ impl BallTree {
         self.nodes.push(Ball {
             center,
             radius: distances.fold(0.0, f64::max),
-            holds: Holds::Triangle(triangles[0]),
+            contents: Contents::Triangle(triangles[0]),
         });
         if triangles.len() > 1 {
             let axis = (high - low).max_position();
@@ -58,7 +60,7 @@ impl BallTree {
             });
             let (first, second) = triangles.split_at_mut(half);
             let children = [self.add(mesh, first), self.add(mesh, second)];
-            self.nodes[this].holds = Holds::Balls(children);
+            self.nodes[this].contents = Contents::Balls(children);
         }
         this
     }

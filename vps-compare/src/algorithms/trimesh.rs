@@ -1,10 +1,14 @@
 use rapier3d::parry::shape::SharedShape;
 
-use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, parry_pair, single};
+use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithms::parry_pair::parry_pair;
+use crate::precision::single;
+use crate::prepared::Prepared;
+use crate::scene::Scene;
 
 /// All triangles in a bounding volume hierarchy, as GImpact in the paper.
 ///
-/// It has no interior: what is through the surface is not pushed back.
+/// It has no interior: a body that is through the surface is not pushed back.
 #[derive(Clone, Copy, Debug)]
 pub struct Trimesh;
 

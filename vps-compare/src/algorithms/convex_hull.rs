@@ -2,7 +2,11 @@ use rapier3d::math::Vector;
 use rapier3d::parry::shape::SharedShape;
 use vps_build::Mesh;
 
-use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, parry_pair, single};
+use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithms::parry_pair::parry_pair;
+use crate::precision::single;
+use crate::prepared::Prepared;
+use crate::scene::Scene;
 
 /// One convex hull of the mesh's support points along 42 directions, those of an icosahedron
 /// divided once: the hull `btShapeHull` makes in the paper's comparison.
@@ -22,8 +26,8 @@ impl CollisionAlgorithm for ConvexHull {
     }
 }
 
-/// The points furthest along 42 evenly spread directions, each once.
-pub(crate) fn support_points(points: &[Vector]) -> Vec<Vector> {
+/// The support points along 42 evenly distributed directions, each once.
+pub(super) fn support_points(points: &[Vector]) -> Vec<Vector> {
     let directions = Mesh::icosphere(1.0, 1).expect("a ball of radius one");
     let mut found: Vec<Vector> = Vec::new();
     for direction in single(directions.vertices()) {

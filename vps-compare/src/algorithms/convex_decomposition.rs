@@ -3,21 +3,26 @@ use rapier3d::parry::shape::SharedShape;
 use rapier3d::parry::transformation::vhacd::{VHACD, VHACDParameters};
 use vps_build::Mesh;
 
-use crate::few_vertices::few_hull_vertices;
-use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, Size, parry_pair, single};
+use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithms::parry_pair::parry_pair;
+use crate::algorithms::simplify_hull::simplify_hull;
+use crate::precision::single;
+use crate::prepared::{Prepared, Size};
+use crate::scene::Scene;
 
 /// Convex parts by VHACD, each a hull of limited size: parry's counterpart of the HACD in the
 /// paper's comparison.
 ///
-/// parry's VHACD splits, but does not merge as the original does, and gives more parts than asked
-/// for. Those that lose the least by it are merged here until there are few enough.
+/// parry's VHACD splits, but does not merge as the original does, and returns more parts than
+/// requested. They are merged here, those with the least added volume first, until there are few
+/// enough.
 #[derive(Clone, Copy, Debug)]
 pub struct ConvexDecomposition {
-    /// Most parts.
+    /// Largest number of parts.
     pub parts: usize,
-    /// Most vertices of a part, 42 or more.
+    /// Largest number of vertices of a part, 42 or more.
     pub vertices: usize,
-    /// Voxels along the longest side VHACD works with.
+    /// Voxels along the longest side in VHACD.
     pub resolution: u32,
 }
 
@@ -41,10 +46,10 @@ impl ConvexDecomposition {
         let split = split
             .into_iter()
             .filter_map(|(points, _)| Hull::new(&points));
-        let parts: Vec<_> = merged(split.collect(), self.parts)
+        let parts: Vec<_> = merge_parts(split.collect(), self.parts)
             .into_iter()
             .filter_map(|hull| {
-                let few = few_hull_vertices(&hull.points, self.vertices)?;
+                let few = simplify_hull(&hull.points, self.vertices)?;
                 Some((Pose::IDENTITY, SharedShape::convex_hull(&few)?))
             })
             .collect();
@@ -79,9 +84,9 @@ impl Hull {
 }
 
 /// Merges the pair of parts whose common hull adds the least volume, until there are at most
-/// `most`.
-fn merged(mut parts: Vec<Hull>, most: usize) -> Vec<Hull> {
-    while parts.len() > most.max(1) {
+/// `max_parts`.
+fn merge_parts(mut parts: Vec<Hull>, max_parts: usize) -> Vec<Hull> {
+    while parts.len() > max_parts.max(1) {
         let mut best: Option<(f32, usize, usize, Hull)> = None;
         for a in 0..parts.len() {
             for b in a + 1..parts.len() {
@@ -116,9 +121,9 @@ mod tests {
             Hull::new(&moved).unwrap()
         };
         let parts = vec![at(0.0), at(5.0), at(1.0)];
-        let two = merged(parts.clone(), 2);
+        let two = merge_parts(parts.clone(), 2);
         assert_eq!(two.len(), 2);
         assert!((two[0].volume - 2.0).abs() < 1e-5 && (two[1].volume - 1.0).abs() < 1e-5);
-        assert!((merged(parts, 1)[0].volume - 6.0).abs() < 1e-5);
+        assert!((merge_parts(parts, 1)[0].volume - 6.0).abs() < 1e-5);
     }
 }

@@ -3,13 +3,17 @@ use rapier3d::parry::shape::{SharedShape, Voxels as ParryVoxels};
 use rapier3d::parry::transformation::voxelization::{FillMode, VoxelSet};
 use vps_build::Mesh;
 
-use crate::{CollisionAlgorithm, PrepareError, Prepared, Scene, Size, parry_pair, single};
+use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithms::parry_pair::parry_pair;
+use crate::precision::single;
+use crate::prepared::{Prepared, Size};
+use crate::scene::Scene;
 
 /// Filled voxels, each a cube: the `Voxels` of parry.
 ///
 /// Every voxel that a triangle passes through is a whole cube, so that a corner of a body can be up
-/// to the diagonal of a voxel outside of its mesh. Between two such bodies parry can report contacts
-/// away from the cubes of either, and so a touch of what is apart.
+/// to the diagonal of a voxel outside of its mesh. Between two such bodies parry can report
+/// contacts away from the cubes of either, and so false touches.
 #[derive(Clone, Copy, Debug)]
 pub struct Voxels {
     /// Voxels along the longest side of a mesh, at least 1.
@@ -27,9 +31,9 @@ impl Voxels {
         let (low, high) = mesh.bounds();
         let voxel_size = (high - low).max_element() / f64::from(self.resolution.max(1));
         let mut vertices = single(mesh.vertices());
-        // parry fills a lattice with a centre at the lowest corner of all vertices, and keeps one
-        // with centres at halves. A vertex of no triangle makes one of them, and nothing is
-        // shifted.
+        // parry fills a lattice with a centre at the lowest corner of all vertices, but stores one
+        // with centres at halves. An additional vertex without triangles aligns the two, so that
+        // nothing is shifted.
         let corner = ((low / voxel_size).floor() - 0.5) * voxel_size;
         vertices.push(corner.as_vec3());
         let filled = VoxelSet::with_voxel_size(
@@ -54,12 +58,12 @@ impl Voxels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Ground;
+    use crate::scene::Ground;
 
     #[test]
     fn a_ball_is_where_it_was_and_no_more_than_a_voxel_thicker() {
         let ball = Mesh::icosphere(1.0, 4).unwrap();
-        // Off the lattice of the voxels by different parts of them.
+        // Off the lattice by different fractions of a voxel along each axis.
         let off = glamx::DVec3::new(0.31, -5.17, 0.123);
         let vertices: Vec<_> = ball.vertices().iter().map(|v| *v + off).collect();
         let moved = Mesh::new(&vertices, ball.triangles()).unwrap();

@@ -1,9 +1,11 @@
+//! Panics as errors.
+
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 
-/// What a piece of work gives, or why it gave up: an algorithm that panics over a mesh is a result
+/// Calls a function and turns a panic into an error: an algorithm that panics on a mesh is a result
 /// like others.
-pub(super) fn guarded<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+pub(super) fn catch_panic<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     let hook = take_hook();
     set_hook(Box::new(|_| ()));
     let result = catch_unwind(AssertUnwindSafe(work));
@@ -24,9 +26,9 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_reason() {
-        assert_eq!(guarded(|| Ok(3)), Ok(3));
-        assert_eq!(guarded::<()>(|| Err("no".into())), Err("no".into()));
-        let why = guarded::<()>(|| panic!("{} is wrong\nand more", 3));
+        assert_eq!(catch_panic(|| Ok(3)), Ok(3));
+        assert_eq!(catch_panic::<()>(|| Err("no".into())), Err("no".into()));
+        let why = catch_panic::<()>(|| panic!("{} is wrong\nand more", 3));
         assert_eq!(why, Err("panicked: 3 is wrong".into()));
     }
 }

@@ -1,4 +1,4 @@
-//! The algorithms by name, and what they make of the two meshes.
+//! Prepares the algorithms by name.
 
 use std::sync::Arc;
 
@@ -11,9 +11,9 @@ use vps_rapier::{Manifolds, Role, Sampling};
 
 use super::args::{Args, Name};
 
-/// How an algorithm's parts are found.
+/// Resolution of convex decomposition.
 const DECOMPOSITION_RESOLUTION: u32 = 64;
-/// Most vertices of a convex part.
+/// Largest number of vertices of a convex part.
 const PART_VERTICES: usize = 100;
 
 /// Prepares an algorithm for two meshes: the first is the ground, the second the body.

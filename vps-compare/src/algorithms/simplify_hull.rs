@@ -1,20 +1,20 @@
-//! Convex hulls of at most so many vertices.
+//! Simplification of convex hulls.
 
 use rapier3d::math::Vector;
 use rapier3d::parry::transformation::try_convex_hull;
 
-use crate::convex_hull::support_points;
+use crate::algorithms::convex_hull::support_points;
 
-/// Points of which the convex hull has at most `most` vertices (42 or more) and comes close to the
-/// hull of all: starting from support points, the point furthest outside joins until there are
-/// enough. `None` if the points lie in a plane.
-pub(crate) fn few_hull_vertices(points: &[Vector], most: usize) -> Option<Vec<Vector>> {
+/// Points whose convex hull has at most `max_vertices` vertices (42 or more) and approximates the
+/// hull of all points: starting from support points, the point furthest outside is added until
+/// there are enough. `None` if the points lie in a plane.
+pub(super) fn simplify_hull(points: &[Vector], max_vertices: usize) -> Option<Vec<Vector>> {
     let (all, _) = try_convex_hull(points).ok()?;
-    if all.len() <= most {
+    if all.len() <= max_vertices {
         return Some(all);
     }
     let mut chosen = support_points(&all);
-    while chosen.len() < most {
+    while chosen.len() < max_vertices {
         let (corners, faces) = try_convex_hull(&chosen).ok()?;
         let planes: Vec<_> = faces
             .iter()
@@ -43,21 +43,21 @@ mod tests {
     use vps_build::Mesh;
 
     use super::*;
-    use crate::single;
+    use crate::precision::single;
 
     #[test]
-    fn a_ball_stays_round() {
+    fn a_simplified_ball_stays_round() {
         let ball = single(Mesh::icosphere(1.0, 4).unwrap().vertices());
         for most in [42, 100, 300] {
-            let few = few_hull_vertices(&ball, most).unwrap();
+            let few = simplify_hull(&ball, most).unwrap();
             assert_eq!(few.len(), most);
-            // No direction is cut off by more than a polyhedron with so few corners must.
+            // The error in any direction is that of a polyhedron with so few vertices.
             for direction in &ball {
                 let reach = few.iter().map(|p| p.dot(*direction)).fold(0.0, f32::max);
                 assert!(reach > 1.0 - 6.0 / most as f32, "{most}: {reach}");
             }
         }
-        assert_eq!(few_hull_vertices(&ball, 9999).unwrap().len(), ball.len());
-        assert!(few_hull_vertices(&[Vector::ZERO; 5], 42).is_none());
+        assert_eq!(simplify_hull(&ball, 9999).unwrap().len(), ball.len());
+        assert!(simplify_hull(&[Vector::ZERO; 5], 42).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! How far two triangles are apart.
+//! The distance of two triangles.
 
 use glamx::DVec3;
 use vps_build::closest_point;
@@ -50,8 +50,8 @@ fn between_segments([p1, q1]: [DVec3; 2], [p2, q2]: [DVec3; 2]) -> f64 {
         }
     };
     let (b, c) = (d1.dot(d2), d1.dot(r));
-    // Along the first where the lines are closest, then along the second, then the first again for
-    // an end of the second.
+    // The parameter of the first segment where the lines are closest, then that of the second, then
+    // the first again for an end of the second.
     let s = share(b * f - c * e, a * e - b * b);
     let t = share(b * s + f, e);
     let s = share(b * t - c, a);
@@ -69,9 +69,8 @@ mod tests {
         prop::array::uniform3(corner())
     }
 
-    /// Between the second and the point of it that is closest to the first, turn by turn: the
-    /// distance of convex sets has no other minimum.
-    fn by_turns(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
+    /// By alternating projections: the distance of convex sets has no local minimum.
+    fn by_alternating_projections(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
         let mut on_a = (a[0] + a[1] + a[2]) / 3.0;
         let mut on_b = on_a;
         for _ in 0..20_000 {
@@ -88,9 +87,9 @@ mod tests {
             let b = b.map(|p| p + DVec3::Z * up);
             let found = squared_distance(a, b).sqrt();
             prop_assert!((found - squared_distance(b, a).sqrt()).abs() < 1e-9);
-            let expected = by_turns(a, b);
+            let expected = by_alternating_projections(a, b);
             prop_assert!(found <= expected + 1e-12, "{} {}", found, expected);
-            // Turn by turn comes close slowly where the triangles meet.
+            // Alternating projections converge slowly where the triangles meet.
             prop_assert!(expected - found < 2e-2, "{} {}", found, expected);
             if found > 0.1 {
                 prop_assert!(expected - found < 1e-4, "{} {}", found, expected);
