@@ -1,4 +1,4 @@
-//! The algorithms experiments name: `algorithms.toml`.
+//! The algorithms of `algorithms.toml`, which experiments refer to by name.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 
-use crate::config::{ConfigError, read_toml};
+use crate::config::toml_file::{ConfigError, read_toml};
 
 /// All algorithms by name.
 #[derive(Clone, Debug)]
@@ -18,31 +18,32 @@ pub(crate) struct Algorithms {
 /// A collision algorithm with its parameters.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Algorithm {
-    /// In tables and figures.
+    /// Its name in tables and figures.
     pub(crate) label: String,
-    /// In all figures, such as `#0072b2`.
+    /// Its colour in all figures, such as `#0072b2`.
     pub(crate) color: String,
     pub(crate) method: Method,
 }
 
-/// An entry of the file: of its own, or like another one.
+/// An entry of the file, with a method of its own or of another entry.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
     label: String,
     color: String,
     method: Option<Method>,
-    /// An algorithm of the method `vps` this one is like but for its manifolds.
+    /// An algorithm of the method `vps` that differs from this one only in its manifolds.
     like: Option<String>,
     /// The level whose clusters give a contact each.
     segments: Option<u32>,
 }
 
+/// The method of an algorithm, with its parameters.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Method {
     Vps(Vps),
-    /// The engine's own ball, for a mesh that is one around its origin.
+    /// The native ball of the engine, for the mesh of a ball around its origin.
     Ball,
     ConvexHull,
     ConvexDecomposition {
@@ -56,6 +57,7 @@ pub(crate) enum Method {
     },
 }
 
+/// Parameters of Voxelmap-Pointshell.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Vps {
@@ -65,13 +67,14 @@ pub(crate) struct Vps {
     pub(crate) margin: u32,
     pub(crate) sampling: SamplingName,
     /// The level whose clusters give a contact each (section 2.4); without it there are four
-    /// contacts that spread over the largest area.
+    /// contacts that span the largest area.
     pub(crate) segments: Option<u32>,
     /// Voxels of the ground; without them the ground is an exact cuboid.
     pub(crate) ground_voxel_size_m: Option<f64>,
     pub(crate) ground_margin: Option<u32>,
 }
 
+/// How a voxelmap is sampled.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum SamplingName {
@@ -80,7 +83,7 @@ pub(crate) enum SamplingName {
 }
 
 impl Algorithm {
-    /// Its colour; checked when it was read.
+    /// Its colour, which was checked when it was read.
     pub(crate) fn rgb(&self) -> RGBColor {
         let digits = self.color.trim_start_matches('#');
         let [_, r, g, b] = u32::from_str_radix(digits, 16).unwrap_or(0).to_be_bytes();

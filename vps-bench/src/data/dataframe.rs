@@ -1,4 +1,4 @@
-//! Tables of columns, from CSV files and back.
+//! Dataframes, from CSV files and back.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,9 @@ use polars::prelude::*;
 use serde::Serialize;
 use vps_build::{FileError, write_atomically};
 
-/// Why a table cannot be read or written.
+/// Why a dataframe cannot be read or written.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum FrameError {
+pub(crate) enum DataFrameError {
     #[error("{}: {source}", path.display())]
     Csv { path: PathBuf, source: csv::Error },
     #[error("{}: {source}", path.display())]
@@ -17,7 +17,7 @@ pub(crate) enum FrameError {
     File(#[from] FileError),
 }
 
-/// Columns by name, as they come from a file: all text.
+/// Columns of text by name, as they come from a file.
 #[derive(Default)]
 pub(crate) struct Columns {
     names: Vec<String>,
@@ -25,16 +25,16 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Appends the rows of a CSV file behind some that are the same in all of them.
+    /// Appends the rows of a CSV file, behind the constant columns `same`.
     ///
     /// # Errors
-    /// When it has other columns than those before.
+    /// When its columns are not those of the files before.
     pub(crate) fn append(
         &mut self,
         path: &Path,
         same: &[(&str, String)],
-    ) -> Result<(), FrameError> {
-        let csv_error = |source| FrameError::Csv {
+    ) -> Result<(), DataFrameError> {
+        let csv_error = |source| DataFrameError::Csv {
             path: path.into(),
             source,
         };
@@ -67,8 +67,8 @@ impl Columns {
         Ok(())
     }
 
-    /// With numbers where a column has nothing else; empty fields are missing values.
-    pub(crate) fn into_frame(self) -> PolarsResult<DataFrame> {
+    /// A dataframe; columns of nothing but numbers become numeric, empty fields missing values.
+    pub(crate) fn into_dataframe(self) -> PolarsResult<DataFrame> {
         let rows = self.values.first().map_or(0, Vec::len);
         let columns = self.names.into_iter().zip(self.values);
         let columns = columns.map(|(name, values)| column(&name, &values));
@@ -91,7 +91,7 @@ fn column(name: &str, values: &[String]) -> Column {
     }
 }
 
-/// A table of rows; the names of fields are those of the columns.
+/// A dataframe of rows; fields become columns of the same name.
 pub(crate) fn of<R: Serialize>(
     rows: impl IntoIterator<Item = R>,
 ) -> Result<DataFrame, Box<dyn std::error::Error>> {
@@ -102,31 +102,33 @@ pub(crate) fn of<R: Serialize>(
     let bytes = writer.into_inner()?;
     let mut columns = Columns::default();
     columns.append_all(csv::Reader::from_reader(&*bytes), &[])?;
-    Ok(columns.into_frame()?)
+    Ok(columns.into_dataframe()?)
 }
 
 /// Reads a CSV file.
-pub(crate) fn read(path: &Path) -> Result<DataFrame, FrameError> {
+pub(crate) fn read(path: &Path) -> Result<DataFrame, DataFrameError> {
     let mut columns = Columns::default();
     columns.append(path, &[])?;
-    columns.into_frame().map_err(|source| FrameError::Polars {
-        path: path.into(),
-        source,
-    })
+    columns
+        .into_dataframe()
+        .map_err(|source| DataFrameError::Polars {
+            path: path.into(),
+            source,
+        })
 }
 
 /// Writes a CSV file; all columns must be numbers or text.
-pub(crate) fn write(path: &Path, frame: &DataFrame) -> Result<(), FrameError> {
-    let csv_error = |source| FrameError::Csv {
+pub(crate) fn write(path: &Path, dataframe: &DataFrame) -> Result<(), DataFrameError> {
+    let csv_error = |source| DataFrameError::Csv {
         path: path.into(),
         source,
     };
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer
-        .write_record(frame.get_column_names().into_iter().map(|n| n.as_str()))
+        .write_record(dataframe.get_column_names().into_iter().map(|n| n.as_str()))
         .map_err(csv_error)?;
-    for row in 0..frame.height() {
-        let fields = frame.columns().iter().map(|c| text(c, row));
+    for row in 0..dataframe.height() {
+        let fields = dataframe.columns().iter().map(|c| text(c, row));
         writer.write_record(fields).map_err(csv_error)?;
     }
     let bytes = writer
@@ -144,41 +146,41 @@ fn text(column: &Column, row: usize) -> String {
     }
 }
 
-/// The rows of a table, one by one.
-pub(crate) fn rows(frame: &DataFrame) -> impl Iterator<Item = Row<'_>> {
-    (0..frame.height()).map(|index| Row { frame, index })
+/// The rows of a dataframe.
+pub(crate) fn rows(dataframe: &DataFrame) -> impl Iterator<Item = Row<'_>> {
+    (0..dataframe.height()).map(|index| Row { dataframe, index })
 }
 
-/// The rows of a case and an algorithm.
+/// The rows of one case and one algorithm.
 pub(crate) fn rows_of<'f>(
-    frame: &'f DataFrame,
+    dataframe: &'f DataFrame,
     case: &str,
     algorithm: &str,
 ) -> impl Iterator<Item = Row<'f>> {
-    rows(frame).filter(move |r| r.text("case") == case && r.text("algorithm") == algorithm)
+    rows(dataframe).filter(move |r| r.text("case") == case && r.text("algorithm") == algorithm)
 }
 
-/// A row of a table.
+/// A row of a dataframe.
 #[derive(Clone, Copy)]
 pub(crate) struct Row<'f> {
-    frame: &'f DataFrame,
+    dataframe: &'f DataFrame,
     index: usize,
 }
 
 impl<'f> Row<'f> {
-    /// A number; `None` if there is none in that column.
+    /// The number in a column; `None` if there is none.
     pub(crate) fn number(&self, column: &str) -> Option<f64> {
-        let values = self.frame.column(column).ok()?;
+        let values = self.dataframe.column(column).ok()?;
         values.get(self.index).ok()?.try_extract::<f64>().ok()
     }
 
-    /// Text, or a number as text; empty if there is none.
+    /// The value in a column as text; empty if there is none.
     pub(crate) fn text(&self, column: &str) -> String {
-        let values = self.frame.column(column);
+        let values = self.dataframe.column(column);
         values.map_or_else(|_| String::new(), |values| text(values, self.index))
     }
 
-    /// Whether some columns hold what is given.
+    /// Whether columns hold the wanted values.
     pub(crate) fn matches<'c>(
         &self,
         wanted: impl IntoIterator<Item = (&'c String, &'c String)>,
@@ -194,15 +196,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_survives_its_file() {
-        let folder = std::env::temp_dir().join(format!("vps-frame-{}", std::process::id()));
+    fn a_dataframe_survives_its_file() {
+        let folder = std::env::temp_dir().join(format!("vps-dataframe-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let (a, b) = (folder.join("a.csv"), folder.join("b.csv"));
-        let frame = df!("what" => ["x", "y, z"], "n" => [Some(1.5), None], "m" => [1.0, 2e-9]);
-        let frame = frame.unwrap();
-        write(&a, &frame).unwrap();
+        let dataframe = df!("what" => ["x", "y, z"], "n" => [Some(1.5), None], "m" => [1.0, 2e-9]);
+        let dataframe = dataframe.unwrap();
+        write(&a, &dataframe).unwrap();
         let back = read(&a).unwrap();
-        assert!(back.equals_missing(&frame), "{back}");
+        assert!(back.equals_missing(&dataframe), "{back}");
         let row = rows(&back).nth(1).unwrap();
         assert_eq!(row.text("what"), "y, z");
         assert_eq!((row.number("n"), row.number("m")), (None, Some(2e-9)));
@@ -213,7 +215,7 @@ mod tests {
         columns.append(&a, &[("job", "2".into())]).unwrap();
         std::fs::write(&b, "other\n1\n").unwrap();
         assert!(columns.append(&b, &[("job", "3".into())]).is_err());
-        let both = columns.into_frame().unwrap();
+        let both = columns.into_dataframe().unwrap();
         assert_eq!(both.height(), 4);
         assert_eq!(rows(&both).nth(2).unwrap().number("job"), Some(2.0));
         std::fs::remove_dir_all(&folder).unwrap();

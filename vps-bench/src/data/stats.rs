@@ -1,6 +1,6 @@
-//! Numbers that sum up others.
+//! Summary statistics, power laws and power spectra.
 
-/// Values in order; what is no number is left out.
+/// Sorted finite values; others are left out.
 pub(crate) struct Sample(Vec<f64>);
 
 impl Sample {
@@ -10,12 +10,12 @@ impl Sample {
         Self(values)
     }
 
-    /// How many there are.
+    /// The number of values.
     pub(crate) fn count(&self) -> f64 {
         self.0.len() as f64
     }
 
-    /// The value below which a share `q` of all lies, interpolated between neighbours.
+    /// The quantile `q` from 0 to 1, interpolated between neighbours.
     pub(crate) fn quantile(&self, q: f64) -> Option<f64> {
         let last = self.0.len().checked_sub(1)?;
         let at = q.clamp(0.0, 1.0) * last as f64;
@@ -27,11 +27,11 @@ impl Sample {
         self.quantile(0.5)
     }
 
-    pub(crate) fn least(&self) -> Option<f64> {
+    pub(crate) fn min(&self) -> Option<f64> {
         self.quantile(0.0)
     }
 
-    pub(crate) fn most(&self) -> Option<f64> {
+    pub(crate) fn max(&self) -> Option<f64> {
         self.quantile(1.0)
     }
 
@@ -40,23 +40,23 @@ impl Sample {
         (!is_empty).then(|| self.0.iter().sum::<f64>() / self.count())
     }
 
-    /// The standard deviation: how far values are from their mean.
-    pub(crate) fn deviation(&self) -> Option<f64> {
+    /// The standard deviation.
+    pub(crate) fn standard_deviation(&self) -> Option<f64> {
         let mean = self.mean()?;
         Self(self.0.iter().map(|v| v - mean).collect()).root_mean_square()
     }
 
-    /// How far values are from zero.
+    /// The root mean square.
     pub(crate) fn root_mean_square(&self) -> Option<f64> {
         let squares = Self(self.0.iter().map(|v| v * v).collect());
         squares.mean().map(f64::sqrt)
     }
 }
 
-/// The exponent p of the power law y = c x^p closest to the points: the slope of a straight line
-/// through their logarithms, by least squares. Points that are not positive have no logarithm and
-/// are left out; `None` without two different x.
-pub(crate) fn exponent(points: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
+/// The exponent p of the power law y = c x^p that fits points best: the slope of the least-squares
+/// line through their logarithms. Points that are not positive are left out; `None` without two
+/// different x.
+pub(crate) fn power_law_exponent(points: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
     let is_positive = |v: f64| v > 0.0 && v.is_finite();
     let positive = points
         .into_iter()
@@ -73,11 +73,11 @@ pub(crate) fn exponent(points: impl IntoIterator<Item = (f64, f64)>) -> Option<f
     (spread > 1e-12).then(|| along(|x, y| x * y) / spread)
 }
 
-/// How the power of equally spaced values, but for that of their mean, is spread over frequencies: a
-/// periodogram with a Hann window, one-sided. Pairs of a frequency in Hz, from the lowest up to half
-/// the rate, and the density at it in squares of the values' unit per Hz.
+/// The power spectrum of equally spaced values without their mean: a one-sided periodogram with a
+/// Hann window. Pairs of a frequency in Hz, from the lowest up to half the rate, and the spectral
+/// density there, in squares of the values' unit per Hz.
 ///
-/// By definition, which takes the square of their count in steps.
+/// The sums are evaluated by definition, in time quadratic in the number of values.
 pub(crate) fn power_spectrum(values: &[f64], step_s: f64) -> Vec<(f64, f64)> {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count as f64;
@@ -128,7 +128,7 @@ mod tests {
     fn a_power_law_has_its_exponent() {
         for power in [-2.0, -0.5, 0.0, 1.0, 3.0] {
             let law = |x: f64| (x, 7e-6 * x.powf(power));
-            let found = exponent([1e-3, 2e-3, 0.5, 40.0].map(law)).unwrap();
+            let found = power_law_exponent([1e-3, 2e-3, 0.5, 40.0].map(law)).unwrap();
             assert!((found - power).abs() < 1e-9, "{found} is not {power}");
         }
     }
@@ -138,36 +138,36 @@ mod tests {
         let e = std::f64::consts::E;
         // Logarithms (0, 0), (1, 1), (2, 0), (3, 1): the slope is 1 / 5.
         let points = [(1.0, 1.0), (e, e), (e * e, 1.0), (e * e * e, e)];
-        assert!((exponent(points).unwrap() - 0.2).abs() < 1e-12);
-        // What has no logarithm changes nothing.
+        assert!((power_law_exponent(points).unwrap() - 0.2).abs() < 1e-12);
+        // Points without a logarithm change nothing.
         let more = [
             (0.0, 1.0),
             (5.0, -1.0),
             (5.0, f64::NAN),
             (f64::INFINITY, 1.0),
         ];
-        let found = exponent(points.into_iter().chain(more)).unwrap();
+        let found = power_law_exponent(points.into_iter().chain(more)).unwrap();
         assert!((found - 0.2).abs() < 1e-12);
     }
 
     #[test]
     fn one_place_has_no_slope() {
-        assert_eq!(exponent([]), None);
-        assert_eq!(exponent([(2.0, 3.0)]), None);
-        assert_eq!(exponent([(2.0, 3.0), (2.0, 5.0)]), None);
+        assert_eq!(power_law_exponent([]), None);
+        assert_eq!(power_law_exponent([(2.0, 3.0)]), None);
+        assert_eq!(power_law_exponent([(2.0, 3.0), (2.0, 5.0)]), None);
     }
 
     #[test]
-    fn values_are_summed_up() {
+    fn samples_are_summarized() {
         let sample = Sample::of([4.0, f64::NAN, 1.0, 3.0, 2.0]);
         assert_eq!(sample.count(), 4.0);
-        assert_eq!((sample.least(), sample.most()), (Some(1.0), Some(4.0)));
+        assert_eq!((sample.min(), sample.max()), (Some(1.0), Some(4.0)));
         assert_eq!((sample.median(), sample.mean()), (Some(2.5), Some(2.5)));
-        assert_eq!(sample.deviation(), Some(1.25_f64.sqrt()));
+        assert_eq!(sample.standard_deviation(), Some(1.25_f64.sqrt()));
         assert_eq!(sample.root_mean_square(), Some(7.5_f64.sqrt()));
         let none = Sample::of([]);
         assert_eq!(
-            (none.median(), none.mean(), none.deviation()),
+            (none.median(), none.mean(), none.standard_deviation()),
             (None, None, None)
         );
     }

@@ -1,7 +1,7 @@
-//! Raw records: for each job a CSV file of rows, and a JSON file that says what they are.
+//! Raw records: for each job a CSV file of rows, and a JSON file that describes them.
 //!
-//! The JSON file is written last, with the number and the checksum of the rows: a job is done if they
-//! are those of the CSV file. Folders of several machines are merged by copying them into one.
+//! The JSON file is written last, with the number and the checksum of the rows: a job is done if
+//! they match the CSV file. Folders of several machines are merged by copying them into one.
 
 use std::path::{Path, PathBuf};
 
@@ -9,21 +9,21 @@ use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 use vps_build::{FileError, write_atomically};
 
-use crate::environment::Environment;
-use crate::frame::{Columns, FrameError};
-use crate::job::Job;
-use crate::lab::Preparation;
-use crate::models::sha256;
+use crate::data::checksum::sha256;
+use crate::data::dataframe::{Columns, DataFrameError};
+use crate::harness::environment::Environment;
+use crate::harness::job::Job;
+use crate::harness::prepare::Preparation;
 
-/// What is known of a job that was run.
+/// The record of a job that was run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct JobRecord {
     pub(crate) job: Job,
-    /// SHA-256 of all that decides what the job does: the experiment, its algorithm, its model.
+    /// SHA-256 of all inputs of the job: the experiment, its algorithm, its model.
     pub(crate) settings: String,
     /// `ok`, or why there are no rows.
     pub(crate) status: String,
-    /// How many rows there are, and the SHA-256 of their file.
+    /// The number of rows, and the SHA-256 of their file.
     pub(crate) rows: usize,
     pub(crate) rows_sha256: String,
     pub(crate) run_s: f64,
@@ -31,18 +31,18 @@ pub(crate) struct JobRecord {
     pub(crate) environment: Environment,
 }
 
-/// Rows of a job, as a CSV file.
+/// The rows of a job, as a CSV file.
 #[derive(Debug, Default)]
 pub(crate) struct Rows {
     csv: Vec<u8>,
     count: usize,
 }
 
-/// What the archive has of a job.
-pub(crate) enum Known {
-    Nothing,
-    Record(Box<JobRecord>),
-    /// Something that is not what was written, and why.
+/// The result of looking up a job.
+pub(crate) enum Lookup {
+    Missing,
+    Found(Box<JobRecord>),
+    /// The files are not as they were written, and why.
     Damaged(String),
 }
 
@@ -51,13 +51,13 @@ pub(crate) enum ArchiveError {
     #[error("{}: {what}", path.display())]
     Record { path: PathBuf, what: String },
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    DataFrame(#[from] DataFrameError),
     #[error(transparent)]
     File(#[from] FileError),
 }
 
 impl Rows {
-    /// One row each; the names of fields are those of the columns.
+    /// Serializes rows; fields become columns of the same name.
     pub(crate) fn of<R: Serialize>(rows: &[R]) -> Result<Self, String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         for row in rows {
@@ -85,7 +85,7 @@ pub(crate) struct Archive {
 }
 
 impl Archive {
-    /// Those in a folder, which is made when it is needed.
+    /// An archive in a folder, which is made when it is needed.
     pub(crate) fn new(folder: impl Into<PathBuf>) -> Self {
         Self {
             folder: folder.into(),
@@ -96,13 +96,13 @@ impl Archive {
         self.folder.join(format!("{}.{extension}", job.id()))
     }
 
-    /// What is known of a job; its rows are read and checked.
-    pub(crate) fn look_up(&self, job: &Job) -> Result<Known, ArchiveError> {
+    /// Looks up a job; its rows are read and checked.
+    pub(crate) fn look_up(&self, job: &Job) -> Result<Lookup, ArchiveError> {
         let [json, csv] = ["json", "csv"].map(|extension| self.path(job, extension));
         let damaged =
-            |path: &Path, what: &str| Known::Damaged(format!("{}: {what}", path.display()));
+            |path: &Path, what: &str| Lookup::Damaged(format!("{}: {what}", path.display()));
         Ok(match (read(&json)?, read(&csv)?) {
-            (None, None) => Known::Nothing,
+            (None, None) => Lookup::Missing,
             (None, Some(_)) => damaged(&json, "missing, the rows beside it may not be all"),
             (Some(_), None) => damaged(&csv, "missing"),
             (Some(bytes), Some(rows)) => match serde_json::from_slice::<JobRecord>(&bytes) {
@@ -113,12 +113,12 @@ impl Archive {
                     let what = format!("{found} rows that are not the {written} that were written");
                     damaged(&csv, &what)
                 }
-                Ok(record) => Known::Record(record.into()),
+                Ok(record) => Lookup::Found(record.into()),
             },
         })
     }
 
-    /// Keeps a job that was run.
+    /// Writes the rows and the record of a job.
     pub(crate) fn write(&self, record: &JobRecord, rows: &Rows) -> Result<(), ArchiveError> {
         write_atomically(&self.path(&record.job, "csv"), &rows.csv)?;
         let path = self.path(&record.job, "json");
@@ -126,7 +126,7 @@ impl Archive {
         Ok(write_atomically(&path, &text)?)
     }
 
-    /// The rows of jobs, behind columns that say which job each is of.
+    /// The rows of jobs, behind the columns `case`, `algorithm` and `seed`.
     pub(crate) fn rows(&self, jobs: &[&Job]) -> Result<DataFrame, ArchiveError> {
         let mut columns = Columns::default();
         for job in jobs {
@@ -137,14 +137,14 @@ impl Archive {
             ];
             columns.append(&self.path(job, "csv"), &same)?;
         }
-        columns.into_frame().map_err(|source| {
+        columns.into_dataframe().map_err(|source| {
             let path = self.folder.clone();
-            FrameError::Polars { path, source }.into()
+            DataFrameError::Polars { path, source }.into()
         })
     }
 }
 
-/// The bytes of a file, if there is one.
+/// The bytes of a file; `None` if it does not exist.
 fn read(path: &Path) -> Result<Option<Vec<u8>>, ArchiveError> {
     match std::fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),

@@ -1,19 +1,20 @@
-//! What a run was made on and with.
+//! The environment of a run: machine, compiler, versions and revision.
 
 use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
-use crate::models::sha256;
-use crate::timed::Stopwatch;
+use crate::data::checksum::sha256;
+use crate::harness::timed_dispatcher::Stopwatch;
 
+/// Machine, compiler, versions and revision of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Environment {
     /// Seconds since 1970.
     pub(crate) unix_time_s: u64,
     pub(crate) processor: String,
     pub(crate) logical_cores: usize,
-    /// The core it was kept on, if it was.
+    /// The core the run was pinned to, if it was.
     #[serde(default)]
     pub(crate) core: Option<usize>,
     pub(crate) memory_mib: u64,
@@ -26,23 +27,23 @@ pub(crate) struct Environment {
     pub(crate) version: String,
     pub(crate) rapier3d: String,
     pub(crate) parry3d: String,
-    /// Of this project, with `+` if files were changed since; empty outside of a checkout.
+    /// Revision of this project, with `+` if files were changed since; empty outside of a checkout.
     pub(crate) revision: String,
-    /// What taking the time of a query costs by itself; contained in every time.
+    /// Overhead of timing a query, contained in every time.
     pub(crate) timer_overhead_ns: u64,
-    /// SHA-256 of this program.
+    /// SHA-256 of the executable.
     pub(crate) program: String,
 }
 
 impl Environment {
-    /// Whether times taken in both may stand in one table, whichever machine took them: the same
-    /// processor, compiler, profile and versions. If not, what differs.
+    /// The first difference that forbids times of both in one table: processor, compiler, profile
+    /// or versions. `None` if they are the same, whichever machine took the times.
     pub(crate) fn difference(&self, other: &Self) -> Option<String> {
         let text = |(what, a, b)| format!("{what} is `{a}` here and `{b}` there");
         self.different(other).map(text).next()
     }
 
-    /// All that differs between two environments A and B, a line each.
+    /// All differences between two environments A and B, a line each.
     pub(crate) fn differences(&self, other: &Self) -> Vec<String> {
         let text = |(what, a, b)| format!("{what}: `{a}` in A, `{b}` in B");
         self.different(other).map(text).collect()
@@ -69,7 +70,7 @@ impl Environment {
         different.map(|((what, a), (_, b))| (what, a, b))
     }
 
-    /// That of this run, which is kept on a core or not.
+    /// The environment of this run, pinned to `core` or to none.
     pub(crate) fn of_now(core: Option<usize>) -> Self {
         let machine = sysinfo::System::new().map(|mut system| {
             system.refresh_memory();
@@ -103,7 +104,7 @@ impl Environment {
     }
 }
 
-/// Of the file this runs from; empty if it cannot be read.
+/// SHA-256 of the executable; empty if it cannot be read.
 fn program() -> String {
     let bytes = std::env::current_exe().and_then(std::fs::read);
     bytes.map_or_else(|_| String::new(), |bytes| sha256(&bytes))
@@ -118,7 +119,7 @@ fn revision() -> Option<String> {
         .ok()?
         .trim()
         .to_owned();
-    // What a run writes itself is no change.
+    // Files that runs write are no changes.
     let changes = git(&[
         "status",
         "--porcelain",

@@ -1,18 +1,18 @@
-//! What there is to do.
+//! Job identifiers and shards.
 
 use serde::{Deserialize, Serialize};
 
 /// One algorithm in one case of an experiment, started from one seed.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Job {
-    /// Such as a frequency; part of a file's name, as is the algorithm.
+    /// The case, such as a frequency; like the algorithm a part of the file name.
     pub(crate) case: String,
     pub(crate) algorithm: String,
     pub(crate) seed: u32,
 }
 
 impl Job {
-    /// One for each of some algorithms.
+    /// One job for each algorithm.
     pub(crate) fn of_each<'a>(
         algorithms: impl IntoIterator<Item = &'a String>,
         case: String,
@@ -25,13 +25,13 @@ impl Job {
         })
     }
 
-    /// What the job is called in its experiment.
+    /// The identifier of the job in its experiment.
     pub(crate) fn id(&self) -> String {
         format!("{}.{}.{}", self.case, self.algorithm, self.seed)
     }
 }
 
-/// A part of all jobs: those whose number, from 1, gives `index` when counted round to `count`.
+/// A part of all jobs: every `count`-th job, from the `index`-th on, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shard {
     index: usize,
@@ -39,16 +39,16 @@ pub(crate) struct Shard {
 }
 
 impl Shard {
-    /// All of it.
+    /// The only shard, of all jobs.
     pub(crate) const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Its number, from 1.
+    /// The number of the shard, from 1.
     pub(crate) fn index(self) -> usize {
         self.index
     }
 
-    /// Whether the job of a number, from 0, belongs to it.
-    pub(crate) fn has(self, job: usize) -> bool {
+    /// Whether the job of a number, from 0, belongs to the shard.
+    pub(crate) fn contains(self, job: usize) -> bool {
         job % self.count == self.index - 1
     }
 }
@@ -76,8 +76,8 @@ mod tests {
     fn shards_share_all_jobs() {
         let shards: Vec<Shard> = ["1/3", "2/3", "3/3"].map(|s| s.parse().unwrap()).into();
         for job in 0..20 {
-            assert_eq!(shards.iter().filter(|s| s.has(job)).count(), 1);
-            assert!(Shard::WHOLE.has(job));
+            assert_eq!(shards.iter().filter(|s| s.contains(job)).count(), 1);
+            assert!(Shard::WHOLE.contains(job));
         }
         for wrong in ["0/3", "4/3", "1", "1/0", "a/b", "1/3/3"] {
             assert!(wrong.parse::<Shard>().is_err(), "{wrong}");

@@ -4,24 +4,24 @@ use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 
-use crate::experiments::Error;
+use crate::error::Error;
 
-/// The file that is locked, with the number of the process in it.
-const NAME: &str = ".lock";
+/// The locked file; it holds the number of the process.
+const FILE_NAME: &str = ".lock";
 
-/// Held as long as a run writes into a folder; the system lets go of it when the process ends, however
-/// it ends.
-pub(crate) struct Lock {
+/// Held while a run writes into a folder; the system releases it when the process ends, however it
+/// ends.
+pub(crate) struct FolderLock {
     _file: File,
 }
 
-impl Lock {
-    /// Of a folder, which is made if it is not there.
+impl FolderLock {
+    /// Locks a folder, which is made if it is missing.
     ///
     /// # Errors
     /// If another process holds it.
     pub(crate) fn of(folder: &Path) -> Result<Self, Error> {
-        let path = folder.join(NAME);
+        let path = folder.join(FILE_NAME);
         let failed = |e: std::io::Error| format!("{}: {e}", path.display());
         std::fs::create_dir_all(folder).map_err(failed)?;
         let mut options = File::options();
@@ -31,7 +31,7 @@ impl Lock {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let mut process = String::new();
-                // Not to be read on some systems.
+                // Some systems do not let it be read.
                 let _ = file.read_to_string(&mut process);
                 return Err(format!(
                     "{}: another run writes there (process {}): wait for its end or choose another \
@@ -41,7 +41,7 @@ impl Lock {
                 )
                 .into());
             }
-            // A file system that knows no locks.
+            // A file system without locks.
             Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => {}
             Err(TryLockError::Error(e)) => return Err(failed(e).into()),
         }

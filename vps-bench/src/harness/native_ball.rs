@@ -1,4 +1,4 @@
-//! The engine's own ball.
+//! The native ball of the engine.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::SharedShape;
 use vps_compare::{CollisionAlgorithm, Ground, PrepareError, Prepared, Scene, Size};
 
-/// A ball in the place of a mesh that is one, on the box itself.
-pub(crate) struct Ball;
+/// A ball in place of a mesh of one around its origin, on an exact box.
+pub(super) struct NativeBall;
 
-impl CollisionAlgorithm for Ball {
+impl CollisionAlgorithm for NativeBall {
     fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
         let Ground::Cuboid(extents) = scene.ground else {
             return Err(PrepareError::NotACuboid);

@@ -1,12 +1,12 @@
-//! A folder that is gone afterwards.
+//! Temporary folders.
 
 use std::path::{Path, PathBuf};
 
-/// A folder of the system's temporary ones.
+/// A temporary folder, removed when it is dropped.
 pub(crate) struct Scratch(PathBuf);
 
 impl Scratch {
-    /// A new one; `name` tells those of a process apart.
+    /// Makes a folder; `name` distinguishes those of a process.
     pub(crate) fn new(name: &str) -> Result<Self, String> {
         let path = std::env::temp_dir().join(format!("{name}-{}", std::process::id()));
         std::fs::create_dir_all(&path).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -20,7 +20,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // What cannot be removed lies in the system's own temporary folder.
+        // A folder that cannot be removed is left to the system.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -15,7 +15,7 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::Shape;
 use vps_compare::Dispatcher;
 
-/// What the queries since the last look took.
+/// Counts queries and their time since the last reading.
 #[derive(Debug, Default)]
 pub(crate) struct Stopwatch {
     ns: AtomicU64,
@@ -23,27 +23,27 @@ pub(crate) struct Stopwatch {
     unsupported: AtomicU64,
 }
 
-/// Queries of a time.
+/// A reading of the stopwatch.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Queries {
+pub(crate) struct QueryTimes {
     pub(crate) ns: u64,
     pub(crate) count: u64,
-    /// Those the engine would pass over in silence.
+    /// Queries that are not supported, which the engine would ignore.
     pub(crate) unsupported: u64,
 }
 
 impl Stopwatch {
-    /// Everything since the last call.
-    pub(crate) fn take(&self) -> Queries {
+    /// Reads and resets the stopwatch.
+    pub(crate) fn take(&self) -> QueryTimes {
         let take = |n: &AtomicU64| n.swap(0, Ordering::Relaxed);
-        Queries {
+        QueryTimes {
             ns: take(&self.ns),
             count: take(&self.queries),
             unsupported: take(&self.unsupported),
         }
     }
 
-    /// What timing costs by itself in nanoseconds: the median of many empty measurements.
+    /// The overhead of timing in nanoseconds: the median of many empty measurements.
     pub(crate) fn overhead_ns() -> u64 {
         let mut samples: Vec<_> = (0..10_001)
             .map(|_| {
@@ -57,19 +57,19 @@ impl Stopwatch {
     }
 }
 
-/// Times the contact queries that pass through.
-pub(crate) struct Timed {
+/// Forwards to a dispatcher and times its contact queries.
+pub(crate) struct TimedDispatcher {
     inner: Arc<Dispatcher>,
     stopwatch: Arc<Stopwatch>,
 }
 
-impl Timed {
+impl TimedDispatcher {
     pub(crate) fn new(inner: Arc<Dispatcher>, stopwatch: Arc<Stopwatch>) -> Self {
         Self { inner, stopwatch }
     }
 }
 
-impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Timed {
+impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for TimedDispatcher {
     fn contact_manifolds(
         &self,
         pos12: &Pose,
@@ -114,7 +114,7 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Timed {
     }
 }
 
-impl QueryDispatcher for Timed {
+impl QueryDispatcher for TimedDispatcher {
     fn intersection_test(
         &self,
         pos12: &Pose,

@@ -2,35 +2,35 @@
 
 use std::collections::BTreeMap;
 
-use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-use crate::frame::rows;
-use crate::page::{fixed, short};
+use crate::data::dataframe::rows;
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::Tables;
 
 /// A statement that a value, or the ratio of two, lies in a range.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Claim {
     pub(crate) name: String,
-    /// What is claimed.
+    /// The statement.
     pub(crate) says: String,
-    /// Where it stands; empty if this project says so itself.
+    /// Its source in the paper; empty for claims of this project.
     #[serde(default)]
     pub(crate) source: String,
-    /// The number the paper prints, of the same kind as what is measured.
+    /// The number printed in the paper, comparable to the measured one.
     pub(crate) paper: Option<f64>,
     #[serde(default)]
     pub(crate) unit: String,
-    /// What is measured; without it nothing here can be compared.
+    /// The measured value; without it the claim is not comparable.
     pub(crate) value: Option<Cell>,
-    /// What it is divided by.
+    /// The divisor, for a claim about a ratio.
     pub(crate) against: Option<Cell>,
     pub(crate) at_least: Option<f64>,
     pub(crate) at_most: Option<f64>,
-    /// What this project stands for: `check` fails when it turns out otherwise.
+    /// The expected outcome: `check` fails on any other.
     pub(crate) expect: Outcome,
-    /// Why it does not hold, or cannot be compared.
+    /// The reason why it does not hold or is not comparable.
     #[serde(default)]
     pub(crate) why: String,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Claim {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cell {
     pub(crate) table: String,
-    /// Columns and what they hold, which must be true of one row.
+    /// Columns and their values, which must match exactly one row.
     pub(crate) row: BTreeMap<String, String>,
     pub(crate) column: String,
 }
@@ -53,20 +53,12 @@ pub(crate) enum Outcome {
     NotComparable,
 }
 
-/// A claim and what became of it.
+/// A judged claim.
 #[derive(Clone, Debug)]
 pub(crate) struct Verdict {
     pub(crate) claim: Claim,
     pub(crate) measured: Option<f64>,
     pub(crate) outcome: Outcome,
-}
-
-/// Tables of an experiment by name.
-pub(crate) type Tables = BTreeMap<String, DataFrame>;
-
-/// A table that must be there.
-pub(crate) fn table<'t>(tables: &'t Tables, name: &str) -> Result<&'t DataFrame, String> {
-    tables.get(name).ok_or_else(|| format!("no table `{name}`"))
 }
 
 impl Outcome {
@@ -81,7 +73,7 @@ impl Outcome {
 }
 
 impl Claim {
-    /// That it can be judged.
+    /// Checks that the claim can be judged.
     pub(crate) fn check(&self) -> Result<(), String> {
         let has_range = self.at_least.is_some() || self.at_most.is_some();
         match &self.value {
@@ -97,7 +89,7 @@ impl Claim {
         }
     }
 
-    /// Judges it; what is not in the tables is not comparable.
+    /// Judges the claim; without its values in the tables it is not comparable.
     pub(crate) fn judge(&self, tables: &Tables) -> Verdict {
         let measured = self.value.as_ref().and_then(|value| {
             let value = value.read(tables)?;
@@ -125,7 +117,7 @@ impl Claim {
         }
     }
 
-    /// A number with the unit of the claim; a whole one that is no ratio, such as a count, without
+    /// A number with the unit of the claim; integers that are no ratios, such as counts, without
     /// digits after the point.
     pub(crate) fn with_unit(&self, value: Option<f64>) -> String {
         let is_whole = self.against.is_none() && value.is_some_and(|v| v.fract() == 0.0);
@@ -140,7 +132,7 @@ impl Claim {
         format!("{text} {}", self.unit)
     }
 
-    /// Where it stands, in words.
+    /// The source in words.
     pub(crate) fn source_text(&self) -> &str {
         match self.source.as_str() {
             "" => "this project",
@@ -148,7 +140,7 @@ impl Claim {
         }
     }
 
-    /// The range in which it holds.
+    /// The range in which the claim holds.
     pub(crate) fn range(&self) -> String {
         match (self.at_least, self.at_most) {
             (Some(least), Some(most)) => format!("{} to {}", short(least), short(most)),
@@ -170,12 +162,12 @@ impl Cell {
 }
 
 impl Verdict {
-    /// Whether it turned out as the project says.
+    /// Whether the outcome is the expected one.
     pub(crate) fn is_as_expected(&self) -> bool {
         self.outcome == self.claim.expect
     }
 
-    /// Why it is so; empty if nobody said so, and if what was said is of another outcome.
+    /// The stated reason; empty without one, and if the outcome is not the expected one.
     pub(crate) fn why(&self) -> &str {
         if self.is_as_expected() {
             &self.claim.why

@@ -7,13 +7,14 @@ use polars::prelude::{Column, DataFrame, DataType};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::experiments::Error;
-use crate::frame::rows;
-use crate::page::{Table, short};
-use crate::report::Results;
+use crate::data::dataframe::rows;
+use crate::data::number_format::short;
+use crate::error::Error;
+use crate::report::document::Table;
+use crate::report::results::Results;
 
-/// What an experiment's file says that changes no time: words, what is shown, and how many jobs
-/// there are, since only those in both are compared.
+/// Keys of an experiment's file that change no time: prose, presentation, and the number of jobs,
+/// since only jobs in both folders are compared.
 const NOT_COMPARED: [&str; 12] = [
     "order",
     "title",
@@ -34,7 +35,7 @@ const NOT_COMPARED: [&str; 12] = [
 pub(crate) struct Ratio {
     experiment: String,
     table: String,
-    /// What is written in its row.
+    /// The text in its row.
     row: String,
     column: String,
     a: f64,
@@ -42,10 +43,10 @@ pub(crate) struct Ratio {
     b_by_a: f64,
 }
 
-/// An experiment that was run in both.
+/// An experiment that was run in both folders.
 pub(crate) struct Comparison {
     name: String,
-    /// How the two machines, compilers or programs differ, a line each.
+    /// Differences of the two environments, a line each.
     differences: Vec<String>,
     ratios: Vec<Ratio>,
 }
@@ -53,7 +54,8 @@ pub(crate) struct Comparison {
 /// Compares every experiment that is in both folders.
 ///
 /// # Errors
-/// When there is none, or when the two were not the same experiment: the error says what differs.
+/// When there is none, or when the two runs differ in more than the environment; the error says
+/// how.
 pub(crate) fn compare(a: &Path, b: &Path) -> Result<Vec<Comparison>, Error> {
     let names = experiments(a)?;
     let mut comparisons = Vec::new();
@@ -109,7 +111,7 @@ fn difference(a: &Results, b: &Results) -> Option<String> {
     if let Some(what) = unequal("", &of_a.ok()?, &of_b.ok()?) {
         return Some(what);
     }
-    // Of the same file: what it names may still be something else.
+    // The files agree; models and algorithms they name may still differ.
     let [of_a, of_b] = [a, b].map(starts);
     let both = of_a
         .iter()
@@ -127,7 +129,7 @@ fn difference(a: &Results, b: &Results) -> Option<String> {
     differences.next()
 }
 
-/// Where two settings differ, and how.
+/// The first difference of two settings.
 fn unequal(key: &str, a: &Value, b: &Value) -> Option<String> {
     let (Value::Object(of_a), Value::Object(of_b)) = (a, b) else {
         return (a != b).then(|| format!("{key} is {a} in A and {b} in B"));
@@ -141,7 +143,7 @@ fn unequal(key: &str, a: &Value, b: &Value) -> Option<String> {
     })
 }
 
-/// By case and algorithm: the settings of its jobs by seed.
+/// The settings of jobs by seed, for each case and algorithm.
 fn starts(results: &Results) -> BTreeMap<String, BTreeMap<String, String>> {
     let mut starts = BTreeMap::<_, BTreeMap<_, _>>::new();
     for row in results.tables.get("jobs").into_iter().flat_map(rows) {
@@ -152,7 +154,7 @@ fn starts(results: &Results) -> BTreeMap<String, BTreeMap<String, String>> {
     starts
 }
 
-/// All times in rows that are in both.
+/// The ratios of all times whose rows are in both.
 fn ratios(name: &str, a: &Results, b: &Results) -> Vec<Ratio> {
     let mut ratios = Vec::new();
     for (table, of_a) in a.tables.iter().filter(|(table, _)| *table != "jobs") {
@@ -178,8 +180,8 @@ fn ratios(name: &str, a: &Results, b: &Results) -> Vec<Ratio> {
     ratios
 }
 
-/// Times of a table by the text in their row and by their column; `None` if rows have the same text,
-/// as those of a course have.
+/// The times of a table by the text of their row and by column; `None` if several rows have the
+/// same text, as in a course over time.
 fn times(table: &DataFrame) -> Option<Vec<((String, String), f64)>> {
     let is_text = |column: &&Column| column.dtype() == &DataType::String;
     let is_time = |name: &str| {
@@ -208,7 +210,7 @@ fn times(table: &DataFrame) -> Option<Vec<((String, String), f64)>> {
     Some(times)
 }
 
-/// For people: a table an experiment, as Markdown.
+/// For people: a Markdown table for each experiment.
 pub(crate) fn text(comparisons: &[Comparison]) -> String {
     let mut text = String::new();
     for comparison in comparisons {
@@ -224,7 +226,7 @@ pub(crate) fn text(comparisons: &[Comparison]) -> String {
     text
 }
 
-/// For machines: a row a time, as CSV.
+/// For machines: a CSV row for each time.
 pub(crate) fn csv(comparisons: &[Comparison]) -> Result<String, Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for ratio in comparisons.iter().flat_map(|c| &c.ratios) {
@@ -236,7 +238,7 @@ pub(crate) fn csv(comparisons: &[Comparison]) -> Result<String, Error> {
 }
 
 impl Comparison {
-    /// Extremes are left out: they say more of the system than of an algorithm.
+    /// Extremes are left out: they depend more on the system than on the algorithm.
     fn table(&self) -> Table {
         let head = ["table", "what", "time", "A", "B", "B / A"];
         let mut table = Table::new("Times of B against those of A", &head);

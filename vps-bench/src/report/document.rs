@@ -1,28 +1,28 @@
-//! What a report says, before it becomes Markdown or HTML.
+//! The content of a report, before it becomes Markdown or HTML.
 
-use crate::claims::Verdict;
+use crate::report::claims::Verdict;
 
-/// The part of a report on one experiment.
+/// The section of a report on one experiment.
 pub(crate) struct Section {
-    /// Of the experiment; also the folder of its files.
+    /// The name of the experiment, and of the folder of its files.
     pub(crate) name: String,
     pub(crate) title: String,
     pub(crate) paper: String,
     pub(crate) question: String,
-    /// Whether few starts were run.
+    /// Whether the run was quick, with few starts.
     pub(crate) is_quick: bool,
     pub(crate) misleads: String,
     pub(crate) blocks: Vec<Block>,
     pub(crate) verdicts: Vec<Verdict>,
-    /// Arguments of the command that makes it again.
+    /// Arguments of the command that reproduces it.
     pub(crate) command: String,
-    /// What was run and on what, one sentence each.
+    /// Machine and versions, one sentence each.
     pub(crate) made_with: Vec<String>,
     /// The CSV files beside it.
     pub(crate) files: Vec<String>,
 }
 
-/// What is said of a quick run.
+/// The note on a quick run.
 pub(crate) const QUICK: &str =
     "A quick run of few starts: numbers are rough, verdicts do not count.";
 
@@ -37,7 +37,7 @@ pub(crate) enum Block {
 /// A table of text.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    /// What it shows, in a line.
+    /// Its subject, in a line.
     pub(crate) caption: String,
     pub(crate) head: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
@@ -59,7 +59,7 @@ impl Table {
         }
     }
 
-    /// Adds a row with as many cells as there are heads.
+    /// Adds a row, which must have as many cells as the head.
     pub(crate) fn push(&mut self, cells: impl IntoIterator<Item = String>) {
         let row: Vec<_> = cells.into_iter().collect();
         debug_assert_eq!(row.len(), self.head.len());
@@ -75,36 +75,12 @@ impl Table {
     }
 }
 
-/// Digits in groups of three.
-pub(crate) fn grouped(digits: &str) -> String {
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
+/// A report that another program made, in a folder beside those of the experiments.
+pub(crate) struct OtherReport {
+    pub(crate) title: String,
+    /// Path from the folder of the report.
+    pub(crate) file: String,
 }
 
-/// Three significant digits; a dash for what is no number.
-pub(crate) fn short(value: impl Into<Option<f64>>) -> String {
-    match value.into() {
-        // Less than the last digit that would be written.
-        Some(value) if value.abs() < 5e-10 => "0".into(),
-        Some(value) if value.is_finite() => {
-            let magnitude = value.abs().max(1e-12).log10().floor() as i32;
-            let digits = (2 - magnitude).clamp(0, 9) as usize;
-            format!("{value:.digits$}")
-        }
-        _ => "–".into(),
-    }
-}
-
-/// A value with a number of digits after the point; a dash for what is no number.
-pub(crate) fn fixed(value: impl Into<Option<f64>>, digits: usize) -> String {
-    match value.into() {
-        Some(value) if value.is_finite() => format!("{value:.digits$}"),
-        _ => "–".into(),
-    }
-}
+/// Heading of the list of other reports.
+pub(crate) const OTHER_REPORTS: &str = "Measured by itself";

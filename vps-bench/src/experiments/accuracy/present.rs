@@ -1,15 +1,16 @@
-//! What the tables of errors show.
+//! Presents the tables of errors.
 
 use std::path::Path;
 
 use polars::prelude::DataFrame;
 
 use super::{Method, SHELL, Settings};
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::experiments::power_law::{Labels, Series, color, figure};
-use crate::frame::{Row, rows};
-use crate::page::{Block, Table, fixed, short};
+use crate::data::dataframe::{Row, rows};
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::experiments::shared::power_law::{Labels, Series, color, figure};
+use crate::report::document::{Block, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -100,22 +101,23 @@ pub(super) fn present(
     Ok(blocks)
 }
 
-/// Values of a column over the size.
-fn points(frame: &DataFrame, shape: &str, method: &str, column: &str) -> Vec<(f64, f64)> {
-    let of_both = rows(frame).filter(|r| r.text("shape") == shape && r.text("method") == method);
+/// Values of a column by size.
+fn points(dataframe: &DataFrame, shape: &str, method: &str, column: &str) -> Vec<(f64, f64)> {
+    let of_both =
+        rows(dataframe).filter(|r| r.text("shape") == shape && r.text("method") == method);
     of_both
         .filter_map(|row| Some((row.number("size")?, row.number(column)?)))
         .collect()
 }
 
-/// What a method is called.
+/// The label of a method.
 fn label(row: &Row<'_>) -> String {
     let name = row.text("method");
     let method = Method::ALL.into_iter().find(|m| m.name() == name);
     method.map_or(name, |m| m.label().into())
 }
 
-fn slopes(caption: &str, frame: &DataFrame) -> Block {
+fn slopes(caption: &str, dataframe: &DataFrame) -> Block {
     let head = [
         "shape",
         "method",
@@ -126,7 +128,7 @@ fn slopes(caption: &str, frame: &DataFrame) -> Block {
         "torque",
     ];
     let mut table = Table::new(caption, &head);
-    for row in rows(frame) {
+    for row in rows(dataframe) {
         let columns = ["bias", "error", "direction", "force", "torque"];
         let slopes = columns.map(|c| fixed(row.number(&format!("{c}_slope")), 2));
         table.push([row.text("shape"), label(&row)].into_iter().chain(slopes));
@@ -134,7 +136,7 @@ fn slopes(caption: &str, frame: &DataFrame) -> Block {
     Block::Table(table)
 }
 
-fn values(caption: &str, size: &str, frame: &DataFrame) -> Block {
+fn values(caption: &str, size: &str, dataframe: &DataFrame) -> Block {
     let head = [
         "shape",
         "method",
@@ -149,7 +151,7 @@ fn values(caption: &str, size: &str, frame: &DataFrame) -> Block {
         "torque error",
     ];
     let mut table = Table::new(caption, &head);
-    for row in rows(frame) {
+    for row in rows(dataframe) {
         let columns = [
             "error_mm_mean",
             "error_mm_deviation",

@@ -1,4 +1,4 @@
-//! What the tables of bouncing balls show.
+//! Presents the tables of bouncing balls.
 
 use std::path::Path;
 
@@ -6,12 +6,14 @@ use plotters::style::RGBColor;
 use polars::prelude::DataFrame;
 
 use super::{Case, Settings};
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::figure::{Axis, Curve, Figure, Mark};
-use crate::frame::{Row, rows_of};
-use crate::page::{Block, FigureLink, Table, fixed};
+use crate::config::algorithms::Algorithms;
+use crate::data::dataframe::{Row, rows_of};
+use crate::data::number_format::fixed;
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::figures::axis::Axis;
+use crate::figures::figure::{Curve, Figure, ReferenceLine};
+use crate::report::document::{Block, FigureLink, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -19,36 +21,40 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let page = Page {
+    let presentation = Presentation {
         settings,
         summary: table(tables, "summary")?,
         course: table(tables, "course")?,
         algorithms,
     };
-    let mut blocks = vec![page.depths()?, page.apexes()?, page.wanders()?];
+    let mut blocks = vec![
+        presentation.depths()?,
+        presentation.apexes()?,
+        presentation.wanders()?,
+    ];
     for case in settings.drawn_cases() {
-        blocks.push(page.heights(case, folder)?);
+        blocks.push(presentation.heights(case, folder)?);
     }
     Ok(blocks)
 }
 
-struct Page<'p> {
+struct Presentation<'p> {
     settings: &'p Settings,
     summary: &'p DataFrame,
     course: &'p DataFrame,
     algorithms: &'p Algorithms,
 }
 
-/// The exact solution and where it rebounds to.
+/// Colour of the exact solution and its rebound height.
 const EXACT: RGBColor = RGBColor(0, 0, 0);
 
-impl Page<'_> {
+impl Presentation<'_> {
     fn of(&self, case: Case, algorithm: &str) -> Option<Row<'_>> {
         let case = case.name();
         rows_of(self.summary, &case, algorithm).next()
     }
 
-    /// A row a case, behind some columns one for each algorithm.
+    /// A row for each case; a column for each algorithm, behind the `first` columns.
     fn by_case(
         &self,
         caption: String,
@@ -136,13 +142,13 @@ impl Page<'_> {
         let mut curves = vec![Curve {
             label: "exact".into(),
             color: EXACT,
-            runs: vec![
+            polylines: vec![
                 (0..settings.steps())
                     .map(|step| f64::from(step) / f64::from(settings.frequency_hz))
                     .map(|time| (time, exact.height_m(time)))
                     .collect(),
             ],
-            has_points: false,
+            has_markers: false,
         }];
         let name = case.name();
         for algorithm in &settings.algorithms {
@@ -152,8 +158,8 @@ impl Page<'_> {
             curves.push(Curve {
                 label: of_list.label.clone(),
                 color: of_list.rgb(),
-                runs: vec![points.collect()],
-                has_points: false,
+                polylines: vec![points.collect()],
+                has_markers: false,
             });
         }
         let title = format!(
@@ -165,18 +171,18 @@ impl Page<'_> {
         let figure = Figure {
             title: title.clone(),
             x: Axis::linear("time (s)", 0.0..settings.duration_s),
-            // Room for the legend above the curves.
+            // Space for the legend above the curves.
             y: Axis::linear(
                 "height (m)",
                 settings.radius_m - 0.1 * fall..settings.drop_height_m + 0.6 * fall,
             ),
             curves,
-            marks: vec![Mark {
+            reference_lines: vec![ReferenceLine {
                 color: EXACT,
                 x: 0.0..settings.duration_s,
                 y: exact.first_apex_m(),
             }],
-            marks_label: "exact height after the first bounce".into(),
+            reference_label: "exact height after the first bounce".into(),
         };
         let stem = format!("height_{name}");
         figure.write(folder, &stem)?;

@@ -1,13 +1,13 @@
-//! Tables of what balls did.
+//! Summarizes bounces.
 
 use polars::prelude::*;
 
 use super::{Case, Settings};
-use crate::claims::Tables;
-use crate::experiments::Error;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// `summary`: a row a case and algorithm, over all start orientations. `course`: heights over time
-/// of the first orientation in the cases that are drawn.
+/// `summary`: a row for each case and algorithm, over all start orientations. `course`: heights
+/// over time of the first orientation in the cases that are drawn.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let mut parts = Vec::new();
     for case in settings.cases() {
@@ -43,7 +43,7 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
     ]))
 }
 
-/// What one algorithm did in one case.
+/// The summary of one algorithm in one case.
 fn of_one(
     settings: &Settings,
     case: Case,

@@ -1,16 +1,18 @@
-//! What the tables of falling bodies show.
+//! Presents the tables of falling bodies.
 
 use std::path::Path;
 
 use polars::prelude::DataFrame;
 
 use super::{Settings, Show};
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::figure::{Axis, Curve, Figure, Mark, decades};
-use crate::frame::{Row, rows_of};
-use crate::page::{Block, FigureLink, Table, fixed, short};
+use crate::config::algorithms::Algorithms;
+use crate::data::dataframe::{Row, rows_of};
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::figures::axis::Axis;
+use crate::figures::figure::{Curve, Figure, ReferenceLine, decades};
+use crate::report::document::{Block, FigureLink, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -19,7 +21,7 @@ pub(super) fn present(
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
     let (summary, course) = (table(tables, "summary")?, table(tables, "course")?);
-    let page = Page {
+    let presentation = Presentation {
         settings,
         summary,
         course,
@@ -30,35 +32,35 @@ pub(super) fn present(
     for show in &settings.show {
         match show {
             Show::QueryTimes => {
-                blocks.push(page.query_times()?);
-                blocks.push(page.times_by_step()?);
+                blocks.push(presentation.query_times()?);
+                blocks.push(presentation.times_by_step()?);
             }
-            Show::LinearVelocity => blocks.push(page.by_step(
+            Show::LinearVelocity => blocks.push(presentation.by_step(
                 "linear_velocity",
                 "Linear velocity",
                 ("linear_velocity_m_s", "velocity (m/s)"),
                 1e-5,
             )?),
-            Show::KineticEnergy => blocks.push(page.by_step(
+            Show::KineticEnergy => blocks.push(presentation.by_step(
                 "kinetic_energy",
                 "Kinetic energy",
                 ("kinetic_energy_mj", "kinetic energy (mJ)"),
                 1e-5,
             )?),
             Show::Spin => {
-                blocks.push(page.spin(table(tables, "turning")?)?);
-                blocks.push(page.spectrum(table(tables, "spectrum")?)?);
+                blocks.push(presentation.spin(table(tables, "turning")?)?);
+                blocks.push(presentation.spectrum(table(tables, "spectrum")?)?);
             }
             Show::Frequencies => {
-                blocks.push(page.held()?);
-                blocks.push(page.depths()?);
+                blocks.push(presentation.held()?);
+                blocks.push(presentation.depths()?);
             }
         }
     }
     Ok(blocks)
 }
 
-struct Page<'p> {
+struct Presentation<'p> {
     settings: &'p Settings,
     summary: &'p DataFrame,
     course: &'p DataFrame,
@@ -66,7 +68,7 @@ struct Page<'p> {
     folder: &'p Path,
 }
 
-impl Page<'_> {
+impl Presentation<'_> {
     fn label(&self, algorithm: &str) -> Result<String, Error> {
         Ok(self.algorithms.get(algorithm)?.label.clone())
     }
@@ -76,12 +78,12 @@ impl Page<'_> {
         rows_of(self.summary, case, algorithm).next()
     }
 
-    /// The case curves are drawn of.
+    /// The case of the curves.
     fn first_case(&self) -> String {
         Settings::case(self.settings.frequencies_hz[0])
     }
 
-    /// Times of all algorithms in the first case, with the paper's beside them.
+    /// Times of all algorithms in the first case, beside those of the paper.
     fn query_times(&self) -> Result<Block, Error> {
         let case = self.first_case();
         let frequency = self.settings.frequencies_hz[0];
@@ -138,7 +140,7 @@ impl Page<'_> {
         Ok(Block::Table(table))
     }
 
-    /// The values of a column over the steps of the first case, divided where one is missing.
+    /// The values of a column over the steps of the first case, with gaps where values are missing.
     fn curves(&self, column: &str, least: f64) -> Result<Vec<Curve>, Error> {
         let case = self.first_case();
         let mut curves = Vec::new();
@@ -155,8 +157,8 @@ impl Page<'_> {
             curves.push(Curve {
                 label: algorithm.label.clone(),
                 color: algorithm.rgb(),
-                runs: runs.filter(|run: &Vec<_>| !run.is_empty()).collect(),
-                has_points: false,
+                polylines: runs.filter(|run: &Vec<_>| !run.is_empty()).collect(),
+                has_markers: false,
             });
         }
         Ok(curves)
@@ -172,24 +174,24 @@ impl Page<'_> {
         let [from, to] = self
             .settings
             .measured_steps(self.settings.frequencies_hz[0]);
-        let mut marks = Vec::new();
+        let mut reference_lines = Vec::new();
         for value in &self.settings.paper_value {
-            marks.push(Mark {
+            reference_lines.push(ReferenceLine {
                 color: self.algorithms.get(&value.algorithm)?.rgb(),
                 x: f64::from(from)..f64::from(to),
                 y: value.query_us,
             });
         }
-        let printed: Vec<_> = marks.iter().map(|m| m.y).collect();
+        let printed: Vec<_> = reference_lines.iter().map(|m| m.y).collect();
         let y = decades(&curves, &printed, 0.01);
         let figure = Figure {
             title: "Time of the collision query, median of all start orientations".into(),
             x: self.steps_axis(),
-            // Room for the legend above the curves.
+            // Space for the legend above the curves.
             y: Axis::logarithmic("time (µs)", y.start..y.end * 1000.0),
             curves,
-            marks_label: "mean in the paper (same colours)".into(),
-            marks,
+            reference_label: "mean in the paper (same colours)".into(),
+            reference_lines,
         };
         figure.write(self.folder, "query_time")?;
         Ok(link("query_time", figure.title))
@@ -209,14 +211,14 @@ impl Page<'_> {
             x: self.steps_axis(),
             y: Axis::logarithmic(label, y.start..y.end * 100.0),
             curves,
-            marks: Vec::new(),
-            marks_label: String::new(),
+            reference_lines: Vec::new(),
+            reference_label: String::new(),
         };
         figure.write(self.folder, stem)?;
         Ok(link(stem, figure.title))
     }
 
-    /// How evenly bodies roll: "discrete transitions" are changes of spin far above the usual one.
+    /// How evenly bodies roll: "discrete transitions" are changes of spin far above the median.
     fn spin(&self, turning: &DataFrame) -> Result<Block, Error> {
         let case = self.first_case();
         let mut table = Table::new(
@@ -257,8 +259,8 @@ impl Page<'_> {
         Ok(Block::Table(table))
     }
 
-    /// The power of the angular velocity over frequencies: the more a body jumps, the more of it is
-    /// at high ones.
+    /// The power spectrum of the angular velocity: a body that jumps has more power at high
+    /// frequencies.
     fn spectrum(&self, spectrum: &DataFrame) -> Result<Block, Error> {
         let case = self.first_case();
         let mut curves = Vec::new();
@@ -274,25 +276,25 @@ impl Page<'_> {
             curves.push(Curve {
                 label: algorithm.label.clone(),
                 color: algorithm.rgb(),
-                runs: vec![run],
-                has_points: false,
+                polylines: vec![run],
+                has_markers: false,
             });
         }
         let y = decades(&curves, &[], 1e-12);
         let figure = Figure {
             title: "Power of the angular velocity, mean of all start orientations".into(),
             x: Axis::logarithmic("frequency (Hz)", 1.0..100.0),
-            // Room for the legend beside the curves.
+            // Space for the legend beside the curves.
             y: Axis::logarithmic("power (rad²/s² per Hz)", y.start..y.end * 1000.0),
             curves,
-            marks: Vec::new(),
-            marks_label: String::new(),
+            reference_lines: Vec::new(),
+            reference_label: String::new(),
         };
         figure.write(self.folder, "spin_spectrum")?;
         Ok(link("spin_spectrum", figure.title))
     }
 
-    /// A row an algorithm, a column a frequency.
+    /// A row for each algorithm, a column for each frequency.
     fn by_frequency(
         &self,
         caption: &str,

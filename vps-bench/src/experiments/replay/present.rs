@@ -1,17 +1,19 @@
-//! What the tables of replayed poses show.
+//! Presents the tables of replayed poses.
 
 use std::path::Path;
 
 use super::Settings;
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::figure::{Axis, Curve, Figure, decades};
-use crate::frame::{Row, rows};
-use crate::page::{Block, FigureLink, Table, fixed, short};
+use crate::config::algorithms::{Algorithm, Algorithms};
+use crate::data::dataframe::{Row, rows};
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::figures::axis::Axis;
+use crate::figures::figure::{Curve, Figure, decades};
+use crate::report::document::{Block, FigureLink, Table};
 
-/// Errors below this are drawn at it, in mm: those of 32-bit numbers.
-const LEAST_ERROR_MM: f64 = 1e-5;
+/// Smaller errors are drawn at this one, in mm: they are those of 32-bit numbers.
+const MIN_ERROR_MM: f64 = 1e-5;
 
 pub(super) fn present(
     settings: &Settings,
@@ -93,21 +95,25 @@ pub(super) fn present(
             of("silent", "poses"),
         ];
         errors.push([vec![label()], numbers(&all_errors), counts].concat());
-        curves.extend(dot(algorithm, row));
+        curves.extend(error_and_time(algorithm, row));
     }
     let ends = |at: fn(&(f64, f64)) -> f64| {
-        let values: Vec<_> = curves.iter().flat_map(|c| &c.runs[0]).map(at).collect();
-        decades(&[], &values, LEAST_ERROR_MM)
+        let values: Vec<_> = curves
+            .iter()
+            .flat_map(|c| &c.polylines[0])
+            .map(at)
+            .collect();
+        decades(&[], &values, MIN_ERROR_MM)
     };
     let (x, y) = (ends(|p| p.0), ends(|p| p.1));
     let figure = Figure {
         title: "Mean time of a query against its error, one dot an algorithm".into(),
         x: Axis::logarithmic("median size of the error of penetration (mm)", x),
-        // Room for the legend above the dots.
+        // Space for the legend above the points.
         y: Axis::logarithmic("mean time (µs)", y.start..y.end * 1000.0),
         curves,
-        marks: Vec::new(),
-        marks_label: String::new(),
+        reference_lines: Vec::new(),
+        reference_label: String::new(),
     };
     figure.write(folder, "time_and_error")?;
     Ok(vec![
@@ -120,13 +126,13 @@ pub(super) fn present(
     ])
 }
 
-/// Error and time of an algorithm.
-fn dot(algorithm: &crate::algorithms::Algorithm, row: &Row<'_>) -> Option<Curve> {
-    let error = row.number("error_mm_abs_median")?.max(LEAST_ERROR_MM);
+/// The point of an algorithm: error and time.
+fn error_and_time(algorithm: &Algorithm, row: &Row<'_>) -> Option<Curve> {
+    let error = row.number("error_mm_abs_median")?.max(MIN_ERROR_MM);
     Some(Curve {
         label: algorithm.label.clone(),
         color: algorithm.rgb(),
-        runs: vec![vec![(error, row.number("query_us_mean")?)]],
-        has_points: true,
+        polylines: vec![vec![(error, row.number("query_us_mean")?)]],
+        has_markers: true,
     })
 }

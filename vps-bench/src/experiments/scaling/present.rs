@@ -1,14 +1,15 @@
-//! What the tables of times show.
+//! Presents the tables of times.
 
 use std::path::Path;
 
 use super::{Ask, Case, Settings};
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::experiments::power_law::{Labels, Series, color, figure};
-use crate::frame::rows;
-use crate::page::{Block, Table, fixed, short};
+use crate::config::algorithms::Algorithms;
+use crate::data::dataframe::rows;
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::experiments::shared::power_law::{Labels, Series, color, figure};
+use crate::report::document::{Block, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -69,7 +70,7 @@ pub(super) fn present(
         let head = [case.label(), "what", "median µs", "mean", "p95", "contacts"];
         let mut table = Table::new(title.clone(), &head);
         for row in of_case() {
-            // Depths were asked in 32 bits, and have no more digits.
+            // Depths are 32-bit numbers and have no more digits.
             let size = row.number("size").map(|size| size as f32);
             table.push([
                 size.map_or_else(String::new, |size| size.to_string()),

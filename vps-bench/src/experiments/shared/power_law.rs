@@ -4,29 +4,31 @@ use std::path::Path;
 
 use plotters::style::RGBColor;
 
-use super::Error;
-use crate::figure::{Axis, Curve, Figure, decades};
-use crate::page::{Block, FigureLink, fixed};
-use crate::stats::exponent;
+use crate::data::number_format::fixed;
+use crate::data::stats::power_law_exponent;
+use crate::error::Error;
+use crate::figures::axis::Axis;
+use crate::figures::figure::{Curve, Figure, decades};
+use crate::report::document::{Block, FigureLink};
 
-/// Values over a size.
-pub(super) struct Series {
-    pub(super) label: String,
-    pub(super) color: RGBColor,
-    pub(super) points: Vec<(f64, f64)>,
+/// Values by size.
+pub(crate) struct Series {
+    pub(crate) label: String,
+    pub(crate) color: RGBColor,
+    pub(crate) points: Vec<(f64, f64)>,
 }
 
-/// What a figure of series is called.
-pub(super) struct Labels<'l> {
-    /// Of its files.
-    pub(super) stem: &'l str,
-    pub(super) title: &'l str,
-    pub(super) x: &'l str,
-    pub(super) y: &'l str,
+/// File name, title and axis labels of a figure.
+pub(crate) struct Labels<'l> {
+    /// File name without extension.
+    pub(crate) stem: &'l str,
+    pub(crate) title: &'l str,
+    pub(crate) x: &'l str,
+    pub(crate) y: &'l str,
 }
 
-/// Colours that are told apart also by those who see fewer (Okabe and Ito).
-pub(super) fn color(number: usize) -> RGBColor {
+/// Colours that can be told apart with colour blindness (Okabe and Ito).
+pub(crate) fn color(number: usize) -> RGBColor {
     const COLORS: [RGBColor; 7] = [
         RGBColor(0, 114, 178),
         RGBColor(213, 94, 0),
@@ -39,9 +41,9 @@ pub(super) fn color(number: usize) -> RGBColor {
     COLORS[number % COLORS.len()]
 }
 
-/// Writes a figure with the exponent of each series in its label. What is not positive has no
-/// place in it.
-pub(super) fn figure(
+/// Writes a figure with the exponent of each series in its label. Values that are not positive are
+/// left out.
+pub(crate) fn figure(
     labels: &Labels<'_>,
     series: impl IntoIterator<Item = Series>,
     folder: &Path,
@@ -49,7 +51,7 @@ pub(super) fn figure(
     let is_positive = |v: &f64| *v > 0.0 && v.is_finite();
     let mut curves = Vec::new();
     for one in series {
-        let slope = exponent(one.points.iter().copied());
+        let slope = power_law_exponent(one.points.iter().copied());
         let points = one.points.into_iter();
         let run: Vec<_> = points
             .filter(|(x, y)| is_positive(x) && is_positive(y))
@@ -58,8 +60,8 @@ pub(super) fn figure(
             curves.push(Curve {
                 label: format!("{} (slope {})", one.label, fixed(slope, 2)),
                 color: one.color,
-                runs: vec![run],
-                has_points: true,
+                polylines: vec![run],
+                has_markers: true,
             });
         }
     }
@@ -67,19 +69,23 @@ pub(super) fn figure(
         return Ok(Block::Text(format!("{}: no values.", labels.title)));
     }
     let ends = |at: fn(&(f64, f64)) -> f64| {
-        let values: Vec<_> = curves.iter().flat_map(|c| &c.runs[0]).map(at).collect();
+        let values: Vec<_> = curves
+            .iter()
+            .flat_map(|c| &c.polylines[0])
+            .map(at)
+            .collect();
         decades(&[], &values, 1e-9)
     };
     let (x, y) = (ends(|p| p.0), ends(|p| p.1));
-    // Room for the legend above the curves.
+    // Space for the legend above the curves.
     let room = 10_f64.powf((0.4 * curves.len() as f64).ceil());
     let drawn = Figure {
         title: labels.title.into(),
         x: Axis::logarithmic(labels.x, x),
         y: Axis::logarithmic(labels.y, y.start..y.end * room),
         curves,
-        marks: Vec::new(),
-        marks_label: String::new(),
+        reference_lines: Vec::new(),
+        reference_label: String::new(),
     };
     drawn.write(folder, labels.stem)?;
     Ok(Block::Figure(FigureLink {

@@ -1,32 +1,32 @@
-//! Worlds in which an engine asks whenever two boxes meet.
+//! Physics worlds that query contacts in every step in which two bounding boxes meet.
 
 use std::sync::Arc;
 
 use rapier3d::prelude::*;
 use vps_compare::{Dispatcher, summary};
 
-use crate::timed::{Queries, Stopwatch, Timed};
+use crate::harness::timed_dispatcher::{QueryTimes, Stopwatch, TimedDispatcher};
 
-/// How a world steps.
+/// Gravity, step and prediction of a world.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stepping {
-    pub(super) gravity_m_s2: f64,
-    pub(super) frequency_hz: u32,
-    /// How far ahead contacts are found.
-    pub(super) prediction_m: f64,
+pub(crate) struct StepSettings {
+    pub(crate) gravity_m_s2: f64,
+    pub(crate) frequency_hz: u32,
+    /// The distance up to which contacts are predicted.
+    pub(crate) prediction_m: f64,
 }
 
-/// A world, and what its queries took.
-pub(super) struct World {
-    pub(super) physics: PhysicsWorld,
+/// A physics world and the times of its queries.
+pub(crate) struct World {
+    pub(crate) physics: PhysicsWorld,
     stopwatch: Arc<Stopwatch>,
 }
 
-impl Stepping {
-    /// An empty world without what avoids queries: recycled contacts and merged manifolds.
-    pub(super) fn world(&self, dispatcher: &Arc<Dispatcher>) -> World {
+impl StepSettings {
+    /// An empty world without contact recycling and manifold clustering, which avoid queries.
+    pub(crate) fn new_world(&self, dispatcher: &Arc<Dispatcher>) -> World {
         let stopwatch = Arc::new(Stopwatch::default());
-        let timed = Timed::new(dispatcher.clone(), stopwatch.clone());
+        let timed = TimedDispatcher::new(dispatcher.clone(), stopwatch.clone());
         let mut physics = PhysicsWorld {
             narrow_phase: NarrowPhase::with_query_dispatcher(timed),
             gravity: Vector::new(0.0, -self.gravity_m_s2 as f32, 0.0),
@@ -43,16 +43,15 @@ impl Stepping {
 }
 
 impl World {
-    /// Adds a box of which the upper side is at height 0.
-    pub(super) fn insert_ground(&mut self, ground: ColliderBuilder, extents_m: [f64; 3]) {
+    /// Adds a box whose upper side is at height 0.
+    pub(crate) fn insert_ground(&mut self, ground: ColliderBuilder, extents_m: [f64; 3]) {
         let below = Vector::new(0.0, -0.5 * extents_m[1] as f32, 0.0);
         self.physics
             .insert(RigidBodyBuilder::fixed().translation(below), ground);
     }
 
-    /// Adds a body of a mass, with an inertia about its centre of mass, whatever an algorithm made
-    /// of its shape.
-    pub(super) fn insert_body(
+    /// Adds a body with the given mass and inertia, independent of the shape an algorithm made.
+    pub(crate) fn insert_body(
         &mut self,
         collider: ColliderBuilder,
         pose: Pose,
@@ -65,17 +64,18 @@ impl World {
         self.physics.insert(builder, collider.density(0.0)).0
     }
 
-    /// Contact points given to the solver in the last step, and the deepest of them.
-    pub(super) fn contacts(&self) -> (usize, Option<f32>) {
+    /// The number of contact points given to the solver in the last step, and the deepest
+    /// penetration.
+    pub(crate) fn contacts(&self) -> (usize, Option<f32>) {
         let pairs = self.physics.narrow_phase.contact_pairs();
         summary(pairs.flat_map(|pair| pair.solver_manifolds().iter()))
     }
 
-    /// Steps once; gives what its queries took.
+    /// Steps once and returns the times of the queries.
     ///
     /// # Errors
-    /// When the engine could not ask the algorithm: it would go on without contacts.
-    pub(super) fn step(&mut self) -> Result<Queries, String> {
+    /// When the algorithm does not support the pair: the engine would go on without contacts.
+    pub(crate) fn step(&mut self) -> Result<QueryTimes, String> {
         self.physics.step();
         let queries = self.stopwatch.take();
         if queries.unsupported > 0 {

@@ -1,13 +1,14 @@
-//! What the tables of stacks show.
+//! Presents the tables of stacks.
 
 use polars::prelude::DataFrame;
 
 use super::Settings;
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::frame::{Row, rows_of};
-use crate::page::{Block, Table, fixed};
+use crate::config::algorithms::Algorithms;
+use crate::data::dataframe::{Row, rows_of};
+use crate::data::number_format::fixed;
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::report::document::{Block, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -51,7 +52,7 @@ pub(super) fn present(
     ])
 }
 
-/// A row an algorithm, a column a number of balls.
+/// A row for each algorithm, a column for each number of balls.
 fn by_balls(
     settings: &Settings,
     summary: &DataFrame,

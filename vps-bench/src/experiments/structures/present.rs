@@ -1,14 +1,15 @@
-//! What tables of builds show, and the pictures.
+//! Presents the tables of builds, and the pictures.
 
 use std::path::Path;
 
 use super::pictures::PICTURES;
 use super::{SHELLS, Settings};
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::frame::{Row, rows};
-use crate::page::{Block, FigureLink, Table, fixed, short};
+use crate::config::algorithms::Algorithms;
+use crate::data::dataframe::{Row, rows};
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::report::document::{Block, FigureLink, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -83,7 +84,7 @@ fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
     table
 }
 
-/// What a clustering is called.
+/// The label of a clustering.
 fn clustering(case: &str) -> &str {
     match case {
         "halves" => "halves, from the top",
@@ -127,7 +128,7 @@ fn pointshells<'f>(
     Ok(table)
 }
 
-/// A row a shell, a column a level.
+/// A row for each shell, a column for each level.
 fn clusters(
     settings: &Settings,
     levels: &[Row<'_>],

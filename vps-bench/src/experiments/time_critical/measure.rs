@@ -1,4 +1,4 @@
-//! Asks a query that is ended early, and the whole one.
+//! Compares a query that is ended early with the complete one.
 
 use std::time::{Duration, Instant};
 
@@ -9,47 +9,47 @@ use serde::Serialize;
 use vps_core::{DistanceField, Estimate, PointSphereTree, Query, Vec3, Weight};
 
 use super::{Limit, Settings};
-use crate::experiments::orientation::orientation_of;
-use crate::lab::Body;
-use crate::stats::Sample;
+use crate::data::stats::Sample;
+use crate::experiments::shared::orientation::orientation_of;
+use crate::harness::context::Body;
 
-/// What a batch of poses gave; errors are those against the whole query.
+/// The results of a batch of poses; errors are against the complete query.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct BatchRow {
     poses: usize,
-    /// How many found all there is.
+    /// Number of complete queries.
     complete: usize,
-    /// By how much the deepest contact found is less deep than the deepest there is.
+    /// Deepest penetration minus that of the deepest contact found.
     penetration_error_mm_median: f64,
     penetration_error_mm_p99: f64,
     penetration_error_mm_max: f64,
-    /// By how much the bound on the penetration is above it.
+    /// Bound on the penetration minus the deepest penetration.
     bound_error_mm_median: f64,
     bound_error_mm_p99: f64,
     bound_error_mm_max: f64,
-    /// Length of the difference of forces over that of the force, where there is one.
+    /// Length of the difference of forces, relative to the force where there is one.
     force_error_median: Option<f64>,
     force_error_p99: Option<f64>,
     force_error_max: Option<f64>,
     query_us_median: f64,
     query_us_p99: f64,
     query_us_max: f64,
-    /// Queries that ended after their deadline, and the longest time after it.
+    /// Queries that ended after their deadline, and the largest overrun.
     overruns: Option<usize>,
     overrun_us_max: Option<f64>,
-    /// Those of them that end late however often they are asked.
+    /// Queries among them that end late in every repetition.
     late_by_itself: Option<usize>,
-    /// The same of a loop that only looks at the clock: what the machine does by itself.
+    /// The same for a loop that only reads the clock: the jitter of the machine.
     idle_loops: Option<usize>,
     idle_overruns: Option<usize>,
     idle_overrun_us_max: Option<f64>,
 }
 
-/// Shell to field, of a batch.
+/// Poses of a batch, shell to field.
 pub(super) struct Poses(Vec<Pose>);
 
 impl Poses {
-    /// Random ones of a body in the ground.
+    /// Random poses of a body in the ground.
     pub(super) fn of(settings: &Settings, body: &Body, batch: u32) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(settings.seed.wrapping_add(u64::from(batch)));
         let [from, to] = settings.depth_m;
@@ -68,21 +68,19 @@ impl Poses {
     }
 }
 
-/// So many poses are asked about before any counts: code and data are in the cache then.
+/// Number of queries before the first measured one, to warm the caches.
 const WARM_UP: usize = 200;
 
-/// After so many queries with a deadline the error of one is taken, and an idle loop is run.
-const SAMPLED: usize = 10;
+/// Of queries with a deadline, one in this many is checked for errors and followed by an idle loop.
+const SAMPLE_EVERY: usize = 10;
 
-/// A query that ends late is asked so many times in all: if it never ends in time, it is late by
-/// itself.
+/// Attempts at a query that ends late: if none ends in time, the query is late by itself.
 const TRIES: usize = 10;
 
-/// Asks about all poses.
+/// Queries all poses.
 ///
 /// # Errors
-/// When the query breaks what it promises: a deepest contact deeper than there is, or a bound below
-/// it.
+/// When the query breaks its contract: a contact deeper than the deepest, or a bound below it.
 pub(super) fn measure<F: DistanceField>(
     settings: &Settings,
     limit: Limit,
@@ -106,10 +104,10 @@ pub(super) fn measure<F: DistanceField>(
             errors.add(&Query::new(tree, field, *pose), center, &estimate)?;
             continue;
         };
-        if number % SAMPLED == 0 {
+        if number % SAMPLE_EVERY == 0 {
             errors.add(&Query::new(tree, field, *pose), center, &estimate)?;
             let start = Instant::now();
-            let end = start + settings.told(deadline);
+            let end = start + settings.stop_after(deadline);
             while Instant::now() < end {}
             clock.idled(start.elapsed(), deadline);
         }
@@ -117,7 +115,7 @@ pub(super) fn measure<F: DistanceField>(
     Ok(row(limit, errors, clock))
 }
 
-/// Asks once; gives how long it took, too.
+/// Queries once and returns the time as well.
 fn ask<F: DistanceField>(
     settings: &Settings,
     limit: Limit,
@@ -132,7 +130,7 @@ fn ask<F: DistanceField>(
         Limit::Points(points) => query.time_critical(center, |tested| tested < points),
         Limit::None => query.time_critical(center, |_| true),
         Limit::Deadline(deadline) => {
-            let end = start + settings.told(deadline);
+            let end = start + settings.stop_after(deadline);
             let mut asked = 0;
             query.time_critical(center, |_| {
                 asked += 1;
@@ -177,10 +175,10 @@ fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
 /// Median, 99th percentile and largest.
 fn quantiles(values: Vec<f64>) -> [Option<f64>; 3] {
     let sample = Sample::of(values);
-    [sample.median(), sample.quantile(0.99), sample.most()]
+    [sample.median(), sample.quantile(0.99), sample.max()]
 }
 
-/// How far estimates are from what there is.
+/// Errors of estimates.
 #[derive(Default)]
 struct Errors {
     penetration_mm: Vec<f64>,
@@ -219,7 +217,7 @@ impl Errors {
     }
 }
 
-/// How long queries took.
+/// Times of queries and overruns of deadlines.
 #[derive(Default)]
 struct Clock {
     query_us: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What the tables of time-critical queries show.
+//! Presents the tables of time-critical queries.
 
 use std::path::Path;
 
@@ -6,12 +6,14 @@ use plotters::style::RGBColor;
 use polars::prelude::DataFrame;
 
 use super::{Limit, Settings};
-use crate::algorithms::Algorithms;
-use crate::claims::{Tables, table};
-use crate::experiments::Error;
-use crate::figure::{Axis, Curve, Figure, decades};
-use crate::frame::{Row, rows_of};
-use crate::page::{Block, FigureLink, Table, fixed, short};
+use crate::config::algorithms::Algorithms;
+use crate::data::dataframe::{Row, rows_of};
+use crate::data::number_format::{fixed, short};
+use crate::data::tables::{Tables, table};
+use crate::error::Error;
+use crate::figures::axis::Axis;
+use crate::figures::figure::{Curve, Figure, decades};
+use crate::report::document::{Block, FigureLink, Table};
 
 pub(super) fn present(
     settings: &Settings,
@@ -19,7 +21,7 @@ pub(super) fn present(
     algorithms: &Algorithms,
     folder: &Path,
 ) -> Result<Vec<Block>, Error> {
-    let page = Page {
+    let presentation = Presentation {
         settings,
         summary: table(tables, "summary")?,
         algorithms,
@@ -27,27 +29,27 @@ pub(super) fn present(
     };
     let mut blocks = Vec::new();
     for name in &settings.algorithms {
-        blocks.push(page.errors(name)?);
-        blocks.push(page.curve(
+        blocks.push(presentation.errors(name)?);
+        blocks.push(presentation.curve(
             name,
             "penetration_error_mm",
             "Deepest contact: how much too little",
             "penetration error (mm)",
             1.0,
         )?);
-        blocks.push(page.curve(
+        blocks.push(presentation.curve(
             name,
             "force_error",
             "Penalty force: how far off",
             "force error (%)",
             100.0,
         )?);
-        blocks.push(page.deadlines(name)?);
+        blocks.push(presentation.deadlines(name)?);
     }
     Ok(blocks)
 }
 
-struct Page<'p> {
+struct Presentation<'p> {
     settings: &'p Settings,
     summary: &'p DataFrame,
     algorithms: &'p Algorithms,
@@ -61,7 +63,7 @@ const QUANTILES: [(&str, &str, RGBColor); 3] = [
     ("max", "largest", RGBColor(213, 94, 0)),
 ];
 
-impl Page<'_> {
+impl Presentation<'_> {
     fn of(&self, limit: Limit, algorithm: &str) -> Option<Row<'_>> {
         let case = limit.case();
         rows_of(self.summary, &case, algorithm).next()
@@ -95,7 +97,7 @@ impl Page<'_> {
                 "time, µs",
             ],
         );
-        for limit in self.settings.points().chain([Limit::None]) {
+        for limit in self.settings.budgets().chain([Limit::None]) {
             let Some(row) = self.of(limit, algorithm) else {
                 continue;
             };
@@ -164,7 +166,7 @@ impl Page<'_> {
         Ok(Block::Table(table))
     }
 
-    /// Errors over budgets.
+    /// Errors by budget.
     fn curve(
         &self,
         algorithm: &str,
@@ -177,14 +179,14 @@ impl Page<'_> {
             let points = self.settings.budget_points.iter().filter_map(|&budget| {
                 let row = self.of(Limit::Points(budget), algorithm)?;
                 let value = factor * row.number(&format!("{what}_{q}"))?;
-                // No error at all has no place on a logarithmic axis.
+                // An error of zero cannot be drawn on a logarithmic axis.
                 (value > 0.0 && value.is_finite()).then_some((budget as f64, value))
             });
             Curve {
                 label: name.into(),
                 color,
-                runs: vec![points.collect()],
-                has_points: true,
+                polylines: vec![points.collect()],
+                has_markers: true,
             }
         });
         let curves: Vec<_> = curves.into();
@@ -200,11 +202,11 @@ impl Page<'_> {
         let figure = Figure {
             title: title.clone(),
             x: Axis::logarithmic("points tested at most", x),
-            // Room for the legend above the curves.
+            // Space for the legend above the curves.
             y: Axis::logarithmic(label, y.start..y.end * 10.0),
             curves,
-            marks: Vec::new(),
-            marks_label: String::new(),
+            reference_lines: Vec::new(),
+            reference_label: String::new(),
         };
         let stem = format!("{what}_{algorithm}");
         figure.write(self.folder, &stem)?;

@@ -1,35 +1,39 @@
-//! What is in front hides what is behind.
+//! A z-buffered software rasterizer.
 
 use vps_core::Vec3;
 
-use super::{Color, FINE, View, colors};
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::view::View;
 
-/// A picture that is being drawn, finer than it will be shown.
+/// Pixels of a canvas along a pixel of the picture.
+pub(crate) const SUPERSAMPLING: u32 = 2;
+
+/// A picture with colours and depths, rendered at [`SUPERSAMPLING`] times its size.
 pub(crate) struct Canvas {
     size: [u32; 2],
     colors: Vec<Color>,
-    /// To the eye, in pixels.
+    /// Depths towards the eye, in pixels.
     depths: Vec<f32>,
 }
 
-/// To the light, in the frame of the eye.
+/// The direction to the light, in the frame of the eye.
 const LIGHT: Vec3 = Vec3::new(-0.36, 0.58, 0.73);
 
-/// Pixels of the rim of a glass ball, whatever its size.
+/// Width of the rim of a translucent ball, in pixels of the picture.
 const RIM: f32 = 1.6;
 
-/// What of a surface is seen without light.
+/// The share of ambient light.
 const AMBIENT: f32 = 0.42;
 
-/// A colour of a surface whose normal is given in the frame of the eye.
+/// The shaded colour of a surface whose normal is given in the frame of the eye.
 fn lit(color: Color, normal: Vec3) -> Color {
     color * (AMBIENT + (1.0 - AMBIENT) * normal.dot(LIGHT).max(0.0))
 }
 
 impl Canvas {
-    /// A white one that will be shown with so many pixels.
+    /// A white canvas for a picture of `width` by `height` pixels.
     pub(crate) fn new(width: u32, height: u32) -> Self {
-        let size = [width * FINE, height * FINE];
+        let size = [width * SUPERSAMPLING, height * SUPERSAMPLING];
         let count = (size[0] * size[1]) as usize;
         Self {
             size,
@@ -50,8 +54,8 @@ impl Canvas {
         (y * self.size[0] + x) as usize
     }
 
-    /// Calls `draw` with the pixels of a box, given by its ends, and their middles.
-    fn each_pixel(&self, low: [f32; 2], high: [f32; 2], mut draw: impl FnMut(usize, [f32; 2])) {
+    /// Calls `draw` with the pixels of a box, given by its corners, and their centres.
+    fn for_each_pixel(&self, low: [f32; 2], high: [f32; 2], mut draw: impl FnMut(usize, [f32; 2])) {
         let first = |c: f32| c.floor().max(0.0) as u32;
         let end = |c: f32, size: u32| (c.ceil().max(0.0) as u32).min(size);
         for y in first(low[1])..end(high[1], self.size[1]) {
@@ -61,45 +65,45 @@ impl Canvas {
         }
     }
 
-    /// Gives each pixel the colour of its point in the plane through the view's middle, behind all
-    /// else.
-    pub(crate) fn fill(&mut self, view: &View, color: impl Fn(Vec3) -> Color) {
+    /// Gives each pixel the colour of its point in the plane through the view's centre, behind
+    /// everything.
+    pub(crate) fn fill_background(&mut self, view: &View, color: impl Fn(Vec3) -> Color) {
         let size = self.size;
         for y in 0..size[1] {
             for x in 0..size[0] {
-                let point = view.point_at([x as f32 + 0.5, y as f32 + 0.5], size);
+                let point = view.unproject([x as f32 + 0.5, y as f32 + 0.5], size);
                 let index = self.index(x, y);
                 self.colors[index] = color(point);
             }
         }
     }
 
-    /// A flat triangle, seen from either side.
+    /// Draws a flat shaded triangle, visible from both sides.
     pub(crate) fn triangle(&mut self, view: &View, corners: [Vec3; 3], color: Color) {
-        let [a, b, c] = corners.map(|corner| view.at(corner, self.size));
-        // Of the picture: y points down.
+        let [a, b, c] = corners.map(|corner| view.project(corner, self.size));
+        // In the frame of the picture: y points down.
         let Some(normal) = (b - a).cross(c - a).try_normalize() else {
             return;
         };
         let facing = normal * normal.z.signum();
         let color = lit(color, Vec3::new(facing.x, -facing.y, facing.z));
-        self.flat(a, [b, c], color);
+        self.fill_triangle(a, [b, c], color);
     }
 
-    /// A flat triangle of one colour, whatever its side to the light.
+    /// Draws a triangle without shading.
     pub(crate) fn unlit_triangle(&mut self, view: &View, corners: [Vec3; 3], color: Color) {
-        let [a, b, c] = corners.map(|corner| view.at(corner, self.size));
-        self.flat(a, [b, c], color);
+        let [a, b, c] = corners.map(|corner| view.project(corner, self.size));
+        self.fill_triangle(a, [b, c], color);
     }
 
-    fn flat(&mut self, a: Vec3, [b, c]: [Vec3; 2], color: Color) {
+    fn fill_triangle(&mut self, a: Vec3, [b, c]: [Vec3; 2], color: Color) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         if area == 0.0 || !area.is_finite() {
             return;
         }
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let mut drawn = Vec::new();
-        self.each_pixel([low.x, low.y], [high.x, high.y], |index, [x, y]| {
+        self.for_each_pixel([low.x, low.y], [high.x, high.y], |index, [x, y]| {
             let pixel = Vec3::new(x, y, 0.0);
             let side = |from: Vec3, to: Vec3| {
                 (to - from).truncate().perp_dot((pixel - from).truncate()) / area
@@ -110,11 +114,11 @@ impl Canvas {
             }
         });
         for (index, depth) in drawn {
-            self.put(index, depth, color);
+            self.write_pixel(index, depth, color);
         }
     }
 
-    fn put(&mut self, index: usize, depth: f32, color: Color) {
+    fn write_pixel(&mut self, index: usize, depth: f32, color: Color) {
         if depth > self.depths[index] {
             self.depths[index] = depth;
             self.colors[index] = color;
@@ -122,18 +126,18 @@ impl Canvas {
     }
 
     /// Calls `draw` with the pixels of a ball, the normals of its front and their depths.
-    fn each_of_ball(
+    fn for_each_ball_pixel(
         &mut self,
         view: &View,
         (center, radius): (Vec3, f32),
         mut draw: impl FnMut(&mut Self, usize, Vec3, f32),
     ) {
         let (at, radius) = (
-            view.at(center, self.size),
+            view.project(center, self.size),
             radius * view.scale(self.size[0]),
         );
         let mut seen = Vec::new();
-        self.each_pixel(
+        self.for_each_pixel(
             [at.x - radius, at.y - radius],
             [at.x + radius, at.y + radius],
             |index, [x, y]| {
@@ -149,22 +153,27 @@ impl Canvas {
         }
     }
 
-    /// A solid ball.
+    /// Draws a solid ball.
     pub(crate) fn ball(&mut self, view: &View, center: Vec3, radius: f32, color: Color) {
-        self.each_of_ball(view, (center, radius), |canvas, index, normal, depth| {
-            canvas.put(index, depth, lit(color, normal));
+        self.for_each_ball_pixel(view, (center, radius), |canvas, index, normal, depth| {
+            canvas.write_pixel(index, depth, lit(color, normal));
         });
     }
 
-    /// Balls of glass, which hide nothing: clear in the middle, dense at their rims. What is solid
-    /// must be drawn before. `density` is how dense they are in the middle, from 0 to 1.
-    pub(crate) fn glass(&mut self, view: &View, mut balls: Vec<(Vec3, f32, Color)>, density: f32) {
-        let depth = |ball: &(Vec3, f32, Color)| view.at(ball.0, self.size).z;
+    /// Draws translucent balls, clear in the middle and dense at their rims, without writing
+    /// depths. Solids must be drawn before. `density` is the opacity in the middle, from 0 to 1.
+    pub(crate) fn translucent_balls(
+        &mut self,
+        view: &View,
+        mut balls: Vec<(Vec3, f32, Color)>,
+        density: f32,
+    ) {
+        let depth = |ball: &(Vec3, f32, Color)| view.project(ball.0, self.size).z;
         balls.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
         for (center, radius, color) in balls {
             let pixels = radius * view.scale(self.size[0]);
-            let rim = (1.0 - RIM * FINE as f32 / pixels).max(0.7);
-            self.each_of_ball(view, (center, radius), |canvas, index, normal, depth| {
+            let rim = (1.0 - RIM * SUPERSAMPLING as f32 / pixels).max(0.7);
+            self.for_each_ball_pixel(view, (center, radius), |canvas, index, normal, depth| {
                 if depth > canvas.depths[index] {
                     let is_rim = normal.truncate().length() > rim;
                     let density = if is_rim { 0.75 } else { density };
@@ -224,7 +233,7 @@ mod tests {
             .iter()
             .filter(|c| **c != colors::WHITE)
             .count();
-        let expected = 0.5 * (80 * FINE * 80 * FINE) as f32;
+        let expected = 0.5 * (80 * SUPERSAMPLING * 80 * SUPERSAMPLING) as f32;
         assert!((count as f32 / expected - 1.0).abs() < 0.02, "{count}");
     }
 
@@ -235,11 +244,11 @@ mod tests {
         let [width, height] = canvas.size();
         let row = (0..width).filter(|&x| canvas.color(x, height / 2) != colors::WHITE);
         let column = (0..height).filter(|&y| canvas.color(width / 2, y) != colors::WHITE);
-        let diameter = (50 * FINE) as i64;
+        let diameter = (50 * SUPERSAMPLING) as i64;
         for length in [row.count(), column.count()] {
             assert!((length as i64 - diameter).abs() <= 1, "{length}");
         }
-        // It is nearer than its middle, and not nearer than its radius.
+        // Its front is nearer than its centre, by no more than its radius.
         canvas.triangle(&view, large(0.24), GREEN);
         assert_eq!(middle(&canvas).y, 0.0);
         canvas.triangle(&view, large(0.26), GREEN);
@@ -247,13 +256,13 @@ mod tests {
     }
 
     #[test]
-    fn glass_behind_is_hidden_and_glass_in_front_is_not() {
+    fn a_translucent_ball_behind_is_hidden_and_one_in_front_is_not() {
         let (mut canvas, view) = front();
         canvas.triangle(&view, large(0.0), GREEN);
         let solid = middle(&canvas);
-        canvas.glass(&view, vec![(Vec3::new(0.0, 0.0, -0.4), 0.2, RED)], 0.2);
+        canvas.translucent_balls(&view, vec![(Vec3::new(0.0, 0.0, -0.4), 0.2, RED)], 0.2);
         assert_eq!(middle(&canvas), solid);
-        canvas.glass(&view, vec![(Vec3::new(0.0, 0.0, 0.4), 0.2, RED)], 0.2);
+        canvas.translucent_balls(&view, vec![(Vec3::new(0.0, 0.0, 0.4), 0.2, RED)], 0.2);
         let seen = middle(&canvas);
         assert!(seen.x > solid.x && seen.y > 0.0, "{seen}");
     }

@@ -1,4 +1,4 @@
-//! Colours that can be told apart, also by those who see fewer of them.
+//! Colours that can be told apart, also with colour blindness.
 
 use vps_core::Vec3;
 
@@ -14,7 +14,7 @@ pub(crate) const SKY: Color = rgb(0x56_b4e9);
 pub(crate) const ORANGE: Color = rgb(0xe6_9f00);
 pub(crate) const VERMILION: Color = rgb(0xd5_5e00);
 
-/// Of Okabe and Ito.
+/// The palette of Okabe and Ito.
 const DISTINCT: [Color; 7] = [
     SKY,
     ORANGE,
@@ -25,7 +25,7 @@ const DISTINCT: [Color; 7] = [
     rgb(0xf0_e442),
 ];
 
-/// Dark and low to light and high, about evenly to the eye (viridis).
+/// From dark and low to light and high, perceptually about uniform (viridis).
 const RAMP: [Color; 6] = [
     rgb(0x44_0154),
     rgb(0x41_4487),
@@ -40,7 +40,7 @@ const fn rgb(code: u32) -> Color {
     Vec3::new(r as f32 / 255.0, g as f32 / 255.0, b as f32 / 255.0)
 }
 
-/// A colour for a number, unlike those of the numbers next to it. After seven they come again,
+/// A categorical colour, unlike those of neighbouring numbers. After seven the colours repeat,
 /// lighter or darker.
 pub(crate) fn distinct(n: usize) -> Color {
     let color = DISTINCT[n % DISTINCT.len()];
@@ -51,7 +51,7 @@ pub(crate) fn distinct(n: usize) -> Color {
     }
 }
 
-/// A colour of the ramp, from 0 to 1.
+/// A colour of the ramp at `t` from 0 to 1.
 pub(crate) fn ramp(t: f32) -> Color {
     let at = t.clamp(0.0, 1.0) * (RAMP.len() - 1) as f32;
     let first = (at as usize).min(RAMP.len() - 2);

@@ -6,32 +6,33 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use vps_build::write_atomically;
 
-use super::palette::palette;
-use super::{Canvas, Color, FINE};
-use crate::figure::{FONT, register_fonts};
+use crate::figures::font::{FONT, register_fonts};
+use crate::figures::render::canvas::{Canvas, SUPERSAMPLING};
+use crate::figures::render::colors::Color;
+use crate::figures::render::palette::palette;
 
-/// What a text's place is of it.
+/// The horizontal alignment of a text at its position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Anchor {
     Left,
     Middle,
 }
 
-/// A picture with the pixels it is shown with.
-pub(crate) struct Sheet {
+/// A picture at its final size.
+pub(crate) struct FigureSheet {
     size: (u32, u32),
-    /// Red, green and blue of each.
+    /// Red, green and blue of each pixel.
     bytes: Vec<u8>,
 }
 
 fn bytes_of(color: Color) -> [u8; 3] {
-    // Few steps, which the eye does not tell, make small files.
+    // Few steps, which the eye does not see, make small files.
     let step = |c: f32| (c.clamp(0.0, 1.0) * 63.0).round() as u32;
     color.to_array().map(|c| (step(c) * 255 / 63) as u8)
 }
 
-impl Sheet {
-    /// A white one.
+impl FigureSheet {
+    /// A white sheet.
     pub(crate) fn new(width: u32, height: u32) -> Self {
         Self {
             size: (width, height),
@@ -39,37 +40,43 @@ impl Sheet {
         }
     }
 
-    fn put(&mut self, [x, y]: [u32; 2], color: Color) {
+    fn set_pixel(&mut self, [x, y]: [u32; 2], color: Color) {
         if x < self.size.0 && y < self.size.1 {
             let at = 3 * (y * self.size.0 + x) as usize;
             self.bytes[at..at + 3].copy_from_slice(&bytes_of(color));
         }
     }
 
-    /// Puts a canvas with its upper left corner at a place.
+    /// Places a canvas with its upper left corner at a position, averaging its samples.
     pub(crate) fn place(&mut self, canvas: &Canvas, [left, top]: [u32; 2]) {
-        let [width, height] = canvas.size().map(|n| n / FINE);
+        let [width, height] = canvas.size().map(|n| n / SUPERSAMPLING);
         for y in 0..height {
             for x in 0..width {
                 let mut sum = Color::ZERO;
-                for i in 0..FINE * FINE {
-                    sum += canvas.color(x * FINE + i % FINE, y * FINE + i / FINE);
+                for i in 0..SUPERSAMPLING * SUPERSAMPLING {
+                    sum += canvas.color(
+                        x * SUPERSAMPLING + i % SUPERSAMPLING,
+                        y * SUPERSAMPLING + i / SUPERSAMPLING,
+                    );
                 }
-                self.put([left + x, top + y], sum / (FINE * FINE) as f32);
+                self.set_pixel(
+                    [left + x, top + y],
+                    sum / (SUPERSAMPLING * SUPERSAMPLING) as f32,
+                );
             }
         }
     }
 
-    /// A filled rectangle.
+    /// Draws a filled rectangle.
     pub(crate) fn rectangle(&mut self, [left, top]: [u32; 2], size: [u32; 2], color: Color) {
         for y in top..top + size[1] {
             for x in left..left + size[0] {
-                self.put([x, y], color);
+                self.set_pixel([x, y], color);
             }
         }
     }
 
-    /// A line of text, its upper side at a place.
+    /// Draws a line of text whose upper side is at a position.
     pub(crate) fn text(
         &mut self,
         text: &str,
@@ -89,7 +96,7 @@ impl Sheet {
         area.present().map_err(|e| e.to_string())
     }
 
-    /// Writes a PNG file of 256 colours at most, which is a fraction of one with all.
+    /// Writes a PNG file of at most 256 colours, which is much smaller than one of all colours.
     pub(crate) fn write(&self, path: &Path) -> Result<(), String> {
         let named = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
         let pixels = self.bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]);
@@ -112,16 +119,18 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::{View, colors};
+    use crate::figures::render::colors;
+    use crate::figures::render::view::View;
     use vps_core::Vec3;
 
     #[test]
     fn what_was_drawn_is_in_the_file() {
-        let path = std::env::temp_dir().join(format!("vps-sheet-{}.png", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("vps-figure-sheet-{}.png", std::process::id()));
         let mut canvas = Canvas::new(20, 20);
         let view = View::from(0.0, 0.0, Vec3::ZERO, 1.0);
         canvas.ball(&view, Vec3::ZERO, 0.3, colors::BLUE);
-        let mut sheet = Sheet::new(60, 40);
+        let mut sheet = FigureSheet::new(60, 40);
         sheet.place(&canvas, [30, 10]);
         let before = sheet.bytes.clone();
         sheet.text("A text", [2, 2], Anchor::Left, 14).unwrap();

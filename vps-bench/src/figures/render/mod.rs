@@ -1,16 +1,7 @@
-//! Pictures of solids, points and spheres, drawn without a display: a small renderer with a depth
-//! buffer, seen from far away (orthographic).
+//! Pictures of solids, points and spheres: a small orthographic renderer with a depth buffer.
 
-mod canvas;
+pub(crate) mod canvas;
 pub(crate) mod colors;
+pub(crate) mod figure_sheet;
 mod palette;
-mod sheet;
-mod view;
-
-pub(crate) use canvas::Canvas;
-pub(crate) use colors::Color;
-pub(crate) use sheet::{Anchor, Sheet};
-pub(crate) use view::View;
-
-/// Pixels of a canvas along a pixel of the picture.
-pub(crate) const FINE: u32 = 2;
+pub(crate) mod view;

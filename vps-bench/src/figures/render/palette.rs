@@ -1,19 +1,19 @@
-//! Few colours in place of many (median cut), which make small files.
+//! Colour quantization by median cut, for small files.
 
 use std::collections::BTreeMap;
 
 /// Red, green and blue.
 type Rgb = [u8; 3];
 
-/// The most a PNG file with a palette can have.
-const MOST: usize = 256;
+/// The largest palette of a PNG file.
+const MAX_COLORS: usize = 256;
 
-/// Colours that are close to each other, and how many pixels have each.
-struct Group(Vec<(Rgb, u32)>);
+/// Colours close to each other, with the number of pixels of each.
+struct ColorBox(Vec<(Rgb, u32)>);
 
-impl Group {
-    /// The channel in which they differ most, and by how much.
-    fn longest(&self) -> (usize, u8) {
+impl ColorBox {
+    /// The channel of the largest range, and that range.
+    fn widest_channel(&self) -> (usize, u8) {
         let range = |channel: usize| {
             let values = || self.0.iter().map(|(color, _)| color[channel]);
             values().max().unwrap_or(0) - values().min().unwrap_or(0)
@@ -24,20 +24,20 @@ impl Group {
         longer(longer(a, b), c)
     }
 
-    /// Rare colours count for more than their pixels: what is small is to be seen too.
+    /// Rare colours weigh more than their pixels, so that small details stay visible.
     fn weight(count: u32) -> f64 {
         f64::from(count).sqrt()
     }
 
-    /// How much is gained by splitting it.
+    /// The error that splitting reduces.
     fn error(&self) -> f64 {
         let weight: f64 = self.0.iter().map(|(_, count)| Self::weight(*count)).sum();
-        f64::from(self.longest().1).powi(2) * weight
+        f64::from(self.widest_channel().1).powi(2) * weight
     }
 
-    /// Two of about the same weight.
+    /// Splits it in two boxes of about the same weight.
     fn split(mut self) -> [Self; 2] {
-        let (channel, _) = self.longest();
+        let (channel, _) = self.widest_channel();
         self.0.sort_by_key(|(color, _)| (color[channel], *color));
         let half = 0.5 * self.0.iter().map(|c| Self::weight(c.1)).sum::<f64>();
         let mut sum = 0.0;
@@ -62,28 +62,28 @@ impl Group {
     }
 }
 
-/// At most 256 colours for pixels, and which of them each pixel gets.
+/// At most 256 colours, and the index of each pixel's colour.
 pub(super) fn palette(pixels: impl Iterator<Item = Rgb> + Clone) -> (Vec<Rgb>, Vec<u8>) {
     let mut counts: BTreeMap<Rgb, u32> = BTreeMap::new();
     for color in pixels.clone() {
         *counts.entry(color).or_default() += 1;
     }
-    let mut groups = vec![Group(counts.into_iter().collect())];
-    while groups.len() < MOST {
-        let errors = groups.iter().map(Group::error).enumerate();
+    let mut boxes = vec![ColorBox(counts.into_iter().collect())];
+    while boxes.len() < MAX_COLORS {
+        let errors = boxes.iter().map(ColorBox::error).enumerate();
         let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((at, _)) = worst.filter(|(_, error)| *error > 0.0) else {
             break;
         };
-        let halves = groups.swap_remove(at).split();
-        groups.extend(halves);
+        let halves = boxes.swap_remove(at).split();
+        boxes.extend(halves);
     }
     let mut index = BTreeMap::new();
-    for (i, group) in groups.iter().enumerate() {
-        index.extend(group.0.iter().map(|(color, _)| (*color, i as u8)));
+    for (i, color_box) in boxes.iter().enumerate() {
+        index.extend(color_box.0.iter().map(|(color, _)| (*color, i as u8)));
     }
     let indices = pixels.map(|color| index[&color]).collect();
-    (groups.iter().map(Group::mean).collect(), indices)
+    (boxes.iter().map(ColorBox::mean).collect(), indices)
 }
 
 #[cfg(test)]
@@ -108,7 +108,7 @@ mod tests {
         let tints = (0..=255).map(|v| [v, v / 2, 0]);
         let pixels: Vec<Rgb> = grey.chain(tints).collect();
         let (count, shown) = shown(&pixels);
-        assert_eq!(count, MOST);
+        assert_eq!(count, MAX_COLORS);
         for (a, b) in pixels.iter().zip(&shown) {
             let differences = [0, 1, 2].map(|i| a[i].abs_diff(b[i]));
             assert!(differences.iter().all(|d| *d <= 6), "{a:?} {b:?}");
