@@ -37,10 +37,10 @@ pub(super) fn surface_distance(a: &IndexedSolid, b: &IndexedSolid, b_in_a: &DPos
                 }
             }
             (Contents::Balls(children), Contents::Triangle(_)) => {
-                stack.extend(below(children, true))
+                stack.extend(below(children, true));
             }
             (Contents::Triangle(_), Contents::Balls(children)) => {
-                stack.extend(below(children, false))
+                stack.extend(below(children, false));
             }
             (Contents::Balls(first), Contents::Balls(second)) => {
                 let is_first = ball.radius >= other.radius;
