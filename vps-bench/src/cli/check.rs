@@ -1,7 +1,7 @@
 //! `check`: judges the claims.
 
 use crate::cli::project::Project;
-use crate::data::number_format::short;
+use crate::data::number_format::significant;
 use crate::error::Error;
 use crate::report::results::Results;
 
@@ -15,7 +15,7 @@ pub(super) fn check(project: &Project, names: &[String]) -> Result<Vec<String>, 
         let is_quick = results.made_with.quick;
         for verdict in results.verdicts(&file) {
             let claim = &verdict.claim;
-            let measured = short(verdict.measured);
+            let measured = significant(verdict.measured);
             let outcome = verdict.outcome.text();
             let quick = if is_quick { ", a quick run" } else { "" };
             println!(

@@ -14,7 +14,7 @@ use self::arguments::{Cli, Command};
 use self::project::Project;
 use crate::error::Error;
 
-/// Executes a command and returns the failures, a line each, of what was done all the same.
+/// Executes a command and returns the failures that did not end it, a line each.
 pub(crate) fn execute(cli: &Cli) -> Result<Vec<String>, Error> {
     let project = Project {
         experiments: cli.experiments.clone(),

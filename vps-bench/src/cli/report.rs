@@ -33,8 +33,8 @@ pub(super) fn report(
             let kept = project.out.join(write::MARKDOWN);
             let made = std::fs::read(out.join(write::MARKDOWN))?;
             if std::fs::read(&kept).is_ok_and(|kept| kept != made) {
-                let what = "not that of the tables: run `vps-bench report`";
-                stale.push(format!("{}: {what}", kept.display()));
+                let message = "not that of the tables: run `vps-bench report`";
+                stale.push(format!("{}: {message}", kept.display()));
             }
         }
     } else {
@@ -47,14 +47,14 @@ pub(super) fn report(
     };
     let before = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let after = splice::splice_all(&before, &tables)
-        .map_err(|what| format!("{}: {what}", path.display()))?;
+        .map_err(|message| format!("{}: {message}", path.display()))?;
     if after != before && check {
         let run = format!("run `vps-bench report --splice {}`", path.display());
-        let what = format!(
+        let message = format!(
             "{}: its tables are not those of the records: {run}",
             path.display()
         );
-        stale.push(what);
+        stale.push(message);
     } else if after != before {
         write_atomically(path, after.as_bytes())?;
     }

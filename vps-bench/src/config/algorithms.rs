@@ -97,9 +97,9 @@ impl Algorithms {
         let entries: BTreeMap<String, Entry> = read_toml(path)?;
         let resolve = |(name, entry): (&String, &Entry)| {
             let method = entry.resolve(&entries);
-            let method = method.map_err(|what| ConfigError::Value {
+            let method = method.map_err(|message| ConfigError::Value {
                 path: path.into(),
-                what: format!("[{name}]: {what}"),
+                message: format!("[{name}]: {message}"),
             })?;
             let algorithm = Algorithm {
                 label: entry.label.clone(),

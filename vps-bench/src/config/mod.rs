@@ -1,5 +1,5 @@
-//! What TOML files say of algorithms and models. Kinds of experiments have their settings beside
-//! them.
+//! Algorithms and models as TOML files describe them, and how such files are read and checked.
+//! Settings of experiments are beside their kinds.
 
 pub(crate) mod algorithms;
 pub(crate) mod models;

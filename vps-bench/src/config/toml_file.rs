@@ -12,14 +12,14 @@ pub(crate) enum ConfigError {
         path: PathBuf,
         source: std::io::Error,
     },
-    #[error("{}:{line}: {what}", path.display())]
+    #[error("{}:{line}: {message}", path.display())]
     Toml {
         path: PathBuf,
         line: usize,
-        what: String,
+        message: String,
     },
-    #[error("{}: {what}", path.display())]
-    Value { path: PathBuf, what: String },
+    #[error("{}: {message}", path.display())]
+    Value { path: PathBuf, message: String },
 }
 
 /// Reads a TOML file; an error names the line.
@@ -33,7 +33,7 @@ pub(crate) fn read_toml<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<T, 
         ConfigError::Toml {
             path: path.into(),
             line: 1 + text[..start].matches('\n').count(),
-            what: error.message().replace('\n', ", "),
+            message: error.message().replace('\n', ", "),
         }
     })
 }

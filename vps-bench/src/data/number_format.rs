@@ -1,7 +1,7 @@
 //! Numbers as text.
 
 /// Digits in groups of three.
-pub(crate) fn grouped(digits: &str) -> String {
+pub(crate) fn group_digits(digits: &str) -> String {
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
@@ -13,7 +13,7 @@ pub(crate) fn grouped(digits: &str) -> String {
 }
 
 /// Three significant digits; a dash if there is no finite number.
-pub(crate) fn short(value: impl Into<Option<f64>>) -> String {
+pub(crate) fn significant(value: impl Into<Option<f64>>) -> String {
     match value.into() {
         // Below the last digit that would be written.
         Some(value) if value.abs() < 5e-10 => "0".into(),

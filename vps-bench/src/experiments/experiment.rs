@@ -54,7 +54,7 @@ pub(crate) trait Experiment {
     fn jobs(&self, quick: bool) -> Vec<Job>;
 
     /// The settings a job depends on, as text, without those that only decide how many jobs there
-    /// are or what is shown of them.
+    /// are, or how they are presented.
     fn settings(&self) -> Result<String, Error>;
 
     /// Inputs of the jobs beside the settings, such as the bytes of a model.

@@ -65,9 +65,9 @@ impl ExperimentFile {
     /// Reads an experiment and checks its values.
     pub(crate) fn read(path: &Path) -> Result<Self, ConfigError> {
         let file: Self = read_toml(path)?;
-        let value_error = |what| ConfigError::Value {
+        let value_error = |message| ConfigError::Value {
             path: path.into(),
-            what,
+            message,
         };
         file.kind()
             .map_err(value_error)?

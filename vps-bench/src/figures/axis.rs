@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::data::number_format::grouped;
+use crate::data::number_format::group_digits;
 
 /// An axis of a figure: its label, range and scale.
 pub(crate) struct Axis {
@@ -76,7 +76,7 @@ fn decimal(y: f64) -> String {
     if decimals > 0 {
         return format!("{y:.decimals$}");
     }
-    grouped(&format!("{y:.0}"))
+    group_digits(&format!("{y:.0}"))
 }
 
 #[cfg(test)]

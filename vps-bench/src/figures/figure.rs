@@ -53,10 +53,10 @@ pub(crate) fn decades(curves: &[Curve], others: &[f64], least: f64) -> Range<f64
 
 /// Why a figure cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {what}", path.display())]
+#[error("{}: {message}", path.display())]
 pub(crate) struct FigureError {
     path: PathBuf,
-    what: String,
+    message: String,
 }
 
 /// Width and height in pixels.
@@ -77,7 +77,7 @@ impl Figure {
             };
             let renamed =
                 drawn.and_then(|()| std::fs::rename(&temporary, &path).map_err(|e| e.to_string()));
-            renamed.map_err(|what| FigureError { path, what })?;
+            renamed.map_err(|message| FigureError { path, message })?;
         }
         Ok(())
     }

@@ -48,8 +48,8 @@ pub(crate) enum Lookup {
 
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ArchiveError {
-    #[error("{}: {what}", path.display())]
-    Record { path: PathBuf, what: String },
+    #[error("{}: {message}", path.display())]
+    Record { path: PathBuf, message: String },
     #[error(transparent)]
     DataFrame(#[from] DataFrameError),
     #[error(transparent)]
@@ -100,7 +100,7 @@ impl Archive {
     pub(crate) fn look_up(&self, job: &Job) -> Result<Lookup, ArchiveError> {
         let [json, csv] = ["json", "csv"].map(|extension| self.path(job, extension));
         let damaged =
-            |path: &Path, what: &str| Lookup::Damaged(format!("{}: {what}", path.display()));
+            |path: &Path, message: &str| Lookup::Damaged(format!("{}: {message}", path.display()));
         Ok(match (read(&json)?, read(&csv)?) {
             (None, None) => Lookup::Missing,
             (None, Some(_)) => damaged(&json, "missing, the rows beside it may not be all"),
@@ -110,8 +110,9 @@ impl Archive {
                 Ok(record) if record.rows_sha256 != sha256(&rows) => {
                     let lines = rows.iter().filter(|b| **b == b'\n').count();
                     let (found, written) = (lines.saturating_sub(1), record.rows);
-                    let what = format!("{found} rows that are not the {written} that were written");
-                    damaged(&csv, &what)
+                    let message =
+                        format!("{found} rows that are not the {written} that were written");
+                    damaged(&csv, &message)
                 }
                 Ok(record) => Lookup::Found(record.into()),
             },
@@ -153,9 +154,9 @@ fn read(path: &Path) -> Result<Option<Vec<u8>>, ArchiveError> {
     }
 }
 
-fn record_error(path: &Path, what: &dyn std::fmt::Display) -> ArchiveError {
+fn record_error(path: &Path, message: &dyn std::fmt::Display) -> ArchiveError {
     ArchiveError::Record {
         path: path.into(),
-        what: what.to_string(),
+        message: message.to_string(),
     }
 }

@@ -15,7 +15,7 @@ use crate::data::checksum::sha256;
 use crate::harness::model_store::ModelStore;
 use crate::harness::prepare::{PreparedAlgorithm, prepare};
 
-/// What all jobs share.
+/// Algorithms, models and assets that all jobs share.
 pub(crate) struct Context {
     pub(crate) algorithms: Algorithms,
     pub(crate) models: ModelStore,

@@ -39,13 +39,13 @@ impl Environment {
     /// The first difference that forbids times of both in one table: processor, compiler, profile
     /// or versions. `None` if they are the same, whichever machine took the times.
     pub(crate) fn difference(&self, other: &Self) -> Option<String> {
-        let text = |(what, a, b)| format!("{what} is `{a}` here and `{b}` there");
+        let text = |(name, a, b)| format!("{name} is `{a}` here and `{b}` there");
         self.different(other).map(text).next()
     }
 
     /// All differences between two environments A and B, a line each.
     pub(crate) fn differences(&self, other: &Self) -> Vec<String> {
-        let text = |(what, a, b)| format!("{what}: `{a}` in A, `{b}` in B");
+        let text = |(name, a, b)| format!("{name}: `{a}` in A, `{b}` in B");
         self.different(other).map(text).collect()
     }
 
@@ -67,7 +67,7 @@ impl Environment {
         };
         let both = of(self).into_iter().zip(of(other));
         let different = both.filter(|(a, b)| a != b);
-        different.map(|((what, a), (_, b))| (what, a, b))
+        different.map(|((name, a), (_, b))| (name, a, b))
     }
 
     /// The environment of this run, pinned to `core` or to none.

@@ -1,5 +1,5 @@
-//! What runs jobs: which of them, on which core, with which models and algorithms, timed how, and
-//! what of each is kept.
+//! Runs jobs: their identifiers and shards, models and prepared algorithms, timing and affinity,
+//! and the records they leave.
 
 pub(crate) mod affinity;
 pub(crate) mod archive;

@@ -12,7 +12,7 @@ use crate::experiments::registry::ExperimentFile;
 use crate::harness::archive::{Archive, JobRecord};
 use crate::harness::environment::Environment;
 
-/// What the tables of an experiment were made with, written beside them.
+/// Settings and environment of the tables of an experiment, written beside them.
 #[derive(Debug, Deserialize, Serialize)]
 pub(crate) struct MadeWith {
     pub(crate) experiment: ExperimentFile,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::data::dataframe::rows;
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::Tables;
 
 /// A statement that a value, or the ratio of two, lies in a range.
@@ -124,7 +124,7 @@ impl Claim {
         let text = if is_whole {
             fixed(value, 0)
         } else {
-            short(value)
+            significant(value)
         };
         if value.is_none() || self.unit.is_empty() {
             return text;
@@ -143,9 +143,9 @@ impl Claim {
     /// The range in which the claim holds.
     pub(crate) fn range(&self) -> String {
         match (self.at_least, self.at_most) {
-            (Some(least), Some(most)) => format!("{} to {}", short(least), short(most)),
-            (Some(least), None) => format!("at least {}", short(least)),
-            (None, Some(most)) => format!("at most {}", short(most)),
+            (Some(least), Some(most)) => format!("{} to {}", significant(least), significant(most)),
+            (Some(least), None) => format!("at least {}", significant(least)),
+            (None, Some(most)) => format!("at most {}", significant(most)),
             (None, None) => "–".into(),
         }
     }

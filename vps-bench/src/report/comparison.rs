@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::data::dataframe::rows;
-use crate::data::number_format::short;
+use crate::data::number_format::significant;
 use crate::error::Error;
 use crate::report::document::Table;
 use crate::report::results::Results;
@@ -108,23 +108,23 @@ fn difference(a: &Results, b: &Results) -> Option<String> {
         return Some(format!("A is a {} run and B a {} one", size(a), size(b)));
     }
     let [of_a, of_b] = [a, b].map(|r| serde_json::to_value(&r.made_with.experiment));
-    if let Some(what) = unequal("", &of_a.ok()?, &of_b.ok()?) {
-        return Some(what);
+    if let Some(difference) = unequal("", &of_a.ok()?, &of_b.ok()?) {
+        return Some(difference);
     }
     // The files agree; models and algorithms they name may still differ.
     let [of_a, of_b] = [a, b].map(starts);
     let both = of_a
         .iter()
-        .filter_map(|(what, a)| Some((what, a, of_b.get(what)?)));
-    let mut differences = both.filter_map(|(what, a, b)| {
+        .filter_map(|(label, a)| Some((label, a, of_b.get(label)?)));
+    let mut differences = both.filter_map(|(label, a, b)| {
         if a.keys().ne(b.keys()) {
             let [a, b] = [a.len(), b.len()];
             return Some(format!(
-                "{what} was started {a} times in A and {b} times in B"
+                "{label} was started {a} times in A and {b} times in B"
             ));
         }
         let why = "its model, its algorithm's parameters or its settings differ";
-        (a != b).then(|| format!("{what} is not the same in A and B: {why}"))
+        (a != b).then(|| format!("{label} is not the same in A and B: {why}"))
     });
     differences.next()
 }
@@ -147,9 +147,9 @@ fn unequal(key: &str, a: &Value, b: &Value) -> Option<String> {
 fn starts(results: &Results) -> BTreeMap<String, BTreeMap<String, String>> {
     let mut starts = BTreeMap::<_, BTreeMap<_, _>>::new();
     for row in results.tables.get("jobs").into_iter().flat_map(rows) {
-        let what = format!("{}.{}", row.text("case"), row.text("algorithm"));
-        let of_one = starts.entry(what).or_default();
-        of_one.insert(row.text("seed"), row.text("settings"));
+        let label = format!("{}.{}", row.text("case"), row.text("algorithm"));
+        let settings = starts.entry(label).or_default();
+        settings.insert(row.text("seed"), row.text("settings"));
     }
     starts
 }
@@ -248,9 +248,9 @@ impl Comparison {
                 ratio.table.clone(),
                 ratio.row.clone(),
                 ratio.column.clone(),
-                short(ratio.a),
-                short(ratio.b),
-                short(ratio.b_by_a),
+                significant(ratio.a),
+                significant(ratio.b),
+                significant(ratio.b_by_a),
             ]);
         }
         table

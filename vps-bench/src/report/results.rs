@@ -9,7 +9,7 @@ use crate::experiments::registry::ExperimentFile;
 use crate::harness::summarize::MadeWith;
 use crate::report::claims::Verdict;
 
-/// The tables of an experiment and what they were made with.
+/// The tables of an experiment, and the environment and settings they were made with.
 pub(crate) struct Results {
     pub(crate) name: String,
     pub(crate) made_with: MadeWith,

@@ -1,4 +1,4 @@
-//! The collision algorithms, one adapter a file.
+//! The collision algorithms, one adapter per file.
 
 mod convex_decomposition;
 mod convex_hull;

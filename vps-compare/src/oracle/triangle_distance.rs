@@ -69,7 +69,7 @@ mod tests {
         prop::array::uniform3(corner())
     }
 
-    /// By alternating projections: the distance of convex sets has no local minimum.
+    /// By alternating projections: the distance of convex sets has a single minimum.
     fn by_alternating_projections(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
         let mut on_a = (a[0] + a[1] + a[2]) / 3.0;
         let mut on_b = on_a;

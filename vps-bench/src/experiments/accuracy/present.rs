@@ -6,7 +6,7 @@ use polars::prelude::DataFrame;
 
 use super::{Method, SHELL, Settings};
 use crate::data::dataframe::{Row, rows};
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::experiments::shared::power_law::{Labels, Series, color, figure};
@@ -103,9 +103,8 @@ pub(super) fn present(
 
 /// Values of a column by size.
 fn points(dataframe: &DataFrame, shape: &str, method: &str, column: &str) -> Vec<(f64, f64)> {
-    let of_both =
-        rows(dataframe).filter(|r| r.text("shape") == shape && r.text("method") == method);
-    of_both
+    let group = rows(dataframe).filter(|r| r.text("shape") == shape && r.text("method") == method);
+    group
         .filter_map(|row| Some((row.number("size")?, row.number(column)?)))
         .collect()
 }
@@ -162,7 +161,7 @@ fn values(caption: &str, size: &str, dataframe: &DataFrame) -> Block {
             "force_error_median",
             "torque_error_median",
         ];
-        let numbers = columns.map(|c| short(row.number(c)));
+        let numbers = columns.map(|c| significant(row.number(c)));
         let size = row.text("size");
         let names = [row.text("shape"), label(&row), size];
         table.push(names.into_iter().chain(numbers));

@@ -4,7 +4,7 @@ use rapier3d::glamx::{DPose3, DVec3};
 use vps_build::Mesh;
 
 /// A surface cut into small pieces.
-pub(super) struct Pieces(Vec<Piece>);
+pub(super) struct SurfacePieces(Vec<Piece>);
 
 struct Piece {
     middle: DVec3,
@@ -15,7 +15,7 @@ struct Piece {
 /// Least number of pieces.
 const MIN_PIECES: usize = 150_000;
 
-impl Pieces {
+impl SurfacePieces {
     /// The pieces of a mesh, whose triangles are subdivided until there are enough.
     pub(super) fn of(mesh: &Mesh) -> Self {
         let mut fine = mesh.clone();
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn the_force_is_the_immersed_volume() {
         let (radius, depth) = (0.1, 0.03);
-        let ball = Pieces::of(&Mesh::icosphere(radius, 6).unwrap());
+        let ball = SurfacePieces::of(&Mesh::icosphere(radius, 6).unwrap());
         let pose = DPose3::translation(0.0, radius - depth, 0.0);
         let (force, torque) = ball.wrench(&pose);
         let cap = std::f64::consts::PI * depth * depth * (radius - depth / 3.0);

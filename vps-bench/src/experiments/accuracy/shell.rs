@@ -6,7 +6,7 @@ use rapier3d::glamx::{DPose3, DVec3};
 use vps_build::{BuildOptions, PointCount};
 use vps_core::{HalfSpace, Pose3, Query, Vec3, Weight};
 
-use super::pressure::Pieces;
+use super::pressure::SurfacePieces;
 use super::shape::{SIZE, Shape};
 use super::{AccuracyRow, Settings, angle_deg, random_rotation, wrench_errors};
 use crate::harness::context::Context;
@@ -18,7 +18,7 @@ impl Settings {
         context: &Context,
     ) -> Result<Vec<AccuracyRow>, String> {
         let mesh = shape.mesh()?;
-        let pieces = Pieces::of(&mesh);
+        let pieces = SurfacePieces::of(&mesh);
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         // The same poses for all numbers of points.
         let poses = (0..self.poses).map(|_| {

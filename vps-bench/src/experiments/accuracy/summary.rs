@@ -64,7 +64,9 @@ pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tabl
             };
             let sizes = sizes.iter();
             let errors: Vec<_> = sizes
-                .map(|(bits, rows)| of_one(shape.name(), method, f64::from_bits(*bits), rows))
+                .map(|(bits, rows)| {
+                    summarize_group(shape.name(), method, f64::from_bits(*bits), rows)
+                })
                 .collect();
             let slopes = slopes(&errors);
             if method == SHELL {
@@ -84,7 +86,12 @@ pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tabl
     ]))
 }
 
-fn of_one<'s>(shape: &'s str, method: &'s str, size: f64, rows: &[Row<'_>]) -> ErrorRow<'s> {
+fn summarize_group<'s>(
+    shape: &'s str,
+    method: &'s str,
+    size: f64,
+    rows: &[Row<'_>],
+) -> ErrorRow<'s> {
     let column = |name: &str| Sample::of(rows.iter().filter_map(|row| row.number(name)));
     let errors = || {
         rows.iter()

@@ -28,9 +28,9 @@ pub(super) fn present(
         algorithms,
     };
     let mut blocks = vec![
-        presentation.depths()?,
+        presentation.penetrations()?,
         presentation.apexes()?,
-        presentation.wanders()?,
+        presentation.drifts()?,
     ];
     for case in settings.drawn_cases() {
         blocks.push(presentation.heights(case, folder)?);
@@ -80,7 +80,7 @@ impl Presentation<'_> {
     }
 
     /// Table 1.
-    fn depths(&self) -> Result<Block, Error> {
+    fn penetrations(&self) -> Result<Block, Error> {
         let printed = |case: Case, algorithm: &str| {
             let mut values = self.settings.paper_value.iter();
             let found =
@@ -124,7 +124,7 @@ impl Presentation<'_> {
         )
     }
 
-    fn wanders(&self) -> Result<Block, Error> {
+    fn drifts(&self) -> Result<Block, Error> {
         self.by_case(
             "How far the centre moved sideways, which an exact ball does not, in mm: median of all \
              start orientations"

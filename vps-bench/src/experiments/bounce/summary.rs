@@ -12,14 +12,14 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
     let mut parts = Vec::new();
     for case in settings.cases() {
         for algorithm in &settings.algorithms {
-            let of_both = rows.clone().lazy().filter(
+            let group = rows.clone().lazy().filter(
                 col("case")
                     .eq(lit(case.name()))
                     .and(col("algorithm").eq(lit(algorithm.as_str()))),
             );
-            let of_both = of_both.collect()?;
-            if of_both.height() > 0 {
-                parts.push(of_one(settings, case, algorithm, of_both)?.lazy());
+            let group = group.collect()?;
+            if group.height() > 0 {
+                parts.push(summarize_group(settings, case, algorithm, group)?.lazy());
             }
         }
     }
@@ -44,7 +44,7 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
 }
 
 /// The summary of one algorithm in one case.
-fn of_one(
+fn summarize_group(
     settings: &Settings,
     case: Case,
     algorithm: &str,

@@ -7,7 +7,7 @@ use polars::prelude::DataFrame;
 use super::{Settings, Show};
 use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows_of};
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
@@ -52,8 +52,8 @@ pub(super) fn present(
                 blocks.push(presentation.spectrum(table(tables, "spectrum")?)?);
             }
             Show::Frequencies => {
-                blocks.push(presentation.held()?);
-                blocks.push(presentation.depths()?);
+                blocks.push(presentation.falls_through()?);
+                blocks.push(presentation.penetrations()?);
             }
         }
     }
@@ -112,7 +112,7 @@ impl Presentation<'_> {
         let mean = |name: &str| self.of(&case, name)?.number("query_us_mean");
         let printed = |name: &str| Some(self.settings.paper_value(name)?.query_us);
         let ratio = |value: Option<f64>, of: Option<f64>| match (value, of) {
-            (Some(value), Some(of)) => format!("{} x", short(value / of)),
+            (Some(value), Some(of)) => format!("{} x", significant(value / of)),
             _ => "–".into(),
         };
         for name in &self.settings.algorithms {
@@ -122,12 +122,12 @@ impl Presentation<'_> {
             let number = |column: &str| row.number(column);
             table.push([
                 self.label(name)?,
-                short(number("query_us_mean")),
-                short(number("query_us_median")),
-                short(number("query_us_p99")),
-                short(number("query_us_max")),
+                significant(number("query_us_mean")),
+                significant(number("query_us_median")),
+                significant(number("query_us_p99")),
+                significant(number("query_us_max")),
                 ratio(mean(name), mean(reference)),
-                short(printed(name)),
+                significant(printed(name)),
                 ratio(printed(name), printed(reference)),
                 fixed(number("contacts_mean"), 1),
                 format!(
@@ -249,11 +249,11 @@ impl Presentation<'_> {
             table.push([
                 self.label(name)?,
                 fixed(row.number("rolling_steps"), 0),
-                short(median),
-                short(p99),
-                short(jump),
-                short(fast),
-                short(share),
+                significant(median),
+                significant(p99),
+                significant(jump),
+                significant(fast),
+                significant(share),
             ]);
         }
         Ok(Block::Table(table))
@@ -316,7 +316,7 @@ impl Presentation<'_> {
         Ok(Block::Table(table))
     }
 
-    fn held(&self) -> Result<Block, Error> {
+    fn falls_through(&self) -> Result<Block, Error> {
         self.by_frequency(
             "Bodies that fell through the ground, of all started",
             |row| {
@@ -329,7 +329,7 @@ impl Presentation<'_> {
         )
     }
 
-    fn depths(&self) -> Result<Block, Error> {
+    fn penetrations(&self) -> Result<Block, Error> {
         self.by_frequency("True penetration at its deepest, mm", |row| {
             fixed(row.number("true_penetration_mm_max"), 1)
         })

@@ -22,16 +22,16 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
         let case = Settings::case(frequency);
         let of_case = rows.clone().lazy().filter(col("case").eq(lit(case)));
         for algorithm in &settings.algorithms {
-            let of_both = of_case
+            let group = of_case
                 .clone()
                 .filter(col("algorithm").eq(lit(algorithm.as_str())));
-            let of_both = of_both.collect()?;
-            if of_both.height() > 0 {
-                parts.push(of_one(settings, frequency, algorithm, &of_both)?);
+            let group = group.collect()?;
+            if group.height() > 0 {
+                parts.push(summarize_group(settings, frequency, algorithm, &group)?);
                 if is_spectrum_shown {
-                    let of_both = spectrum_of(settings, frequency, algorithm, &of_both);
-                    turning.extend(TurningRow::of(&of_both));
-                    spectrum.extend(of_both);
+                    let group = spectrum_of(settings, frequency, algorithm, &group);
+                    turning.extend(TurningRow::of(&group));
+                    spectrum.extend(group);
                 }
             }
         }
@@ -151,7 +151,7 @@ fn query_us() -> Expr {
 }
 
 /// The summary of one algorithm at one frequency.
-fn of_one(
+fn summarize_group(
     settings: &Settings,
     frequency: u32,
     algorithm: &str,

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Settings;
 use crate::config::algorithms::{Algorithm, Algorithms};
 use crate::data::dataframe::{Row, rows};
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
@@ -45,7 +45,7 @@ pub(super) fn present(
     let mut errors = Table::new(
         format!(
             "Reported minus true penetration, mm; touches with a tolerance of {} mm",
-            short(settings.tolerance_m * 1e3)
+            significant(settings.tolerance_m * 1e3)
         ),
         &[
             "algorithm",
@@ -64,7 +64,7 @@ pub(super) fn present(
     for (algorithm, row) in &of_each {
         let label = || algorithm.label.clone();
         let numbers = |columns: &[&str]| {
-            let cells = columns.iter().map(|column| short(row.number(column)));
+            let cells = columns.iter().map(|column| significant(row.number(column)));
             cells.collect::<Vec<_>>()
         };
         let all_times = [

@@ -41,16 +41,20 @@ struct SummaryRow<'s> {
 pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tables, Error> {
     let mut summary = Vec::new();
     for algorithm in &settings.algorithms {
-        let of_it = rows(records).filter(|row| row.text("algorithm") == *algorithm);
-        let of_it: Vec<_> = of_it.collect();
-        if !of_it.is_empty() {
-            summary.push(of_one(settings, algorithm, &of_it));
+        let group = rows(records).filter(|row| row.text("algorithm") == *algorithm);
+        let group: Vec<_> = group.collect();
+        if !group.is_empty() {
+            summary.push(summarize_group(settings, algorithm, &group));
         }
     }
     Ok(Tables::from([("summary".into(), dataframe::of(summary)?)]))
 }
 
-fn of_one<'s>(settings: &Settings, algorithm: &'s str, rows: &[Row<'_>]) -> SummaryRow<'s> {
+fn summarize_group<'s>(
+    settings: &Settings,
+    algorithm: &'s str,
+    rows: &[Row<'_>],
+) -> SummaryRow<'s> {
     let column = |name: &str| Sample::of(rows.iter().filter_map(|row| row.number(name)));
     let answers: Vec<_> = rows
         .iter()

@@ -47,7 +47,7 @@ impl Settings {
         Ok(rows)
     }
 
-    /// Bodies in random orientations on a square grid, in contact with an exact box: a voxelmap of
+    /// Bodies in random orientations on a square grid, a little above an exact box: a voxelmap of
     /// the ground would differ for each number of bodies.
     fn world(&self, body: &Body, prepared: &Prepared, count: u32) -> World {
         let settings = &self.bodies;

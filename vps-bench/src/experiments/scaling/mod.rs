@@ -77,7 +77,7 @@ enum Case {
 
 /// A query of a pointshell, or of a peer.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Ask {
+enum QueryKind {
     Touches,
     Deepest,
     Manifold,
@@ -130,24 +130,34 @@ impl Case {
         }
     }
 
-    fn asks(self) -> &'static [Ask] {
-        const QUERIES: [Ask; 5] = [
-            Ask::Touches,
-            Ask::Deepest,
-            Ask::Manifold,
-            Ask::Wrench,
-            Ask::Flat,
+    fn queries(self) -> &'static [QueryKind] {
+        const QUERIES: [QueryKind; 5] = [
+            QueryKind::Touches,
+            QueryKind::Deepest,
+            QueryKind::Manifold,
+            QueryKind::Wrench,
+            QueryKind::Flat,
         ];
         match self {
             Self::Points | Self::Depth => &QUERIES,
-            Self::VoxelSize => &[Ask::Touches, Ask::Deepest, Ask::Manifold, Ask::Wrench],
-            Self::Triangles => &[Ask::Deepest, Ask::Manifold, Ask::Wrench, Ask::Trimesh],
+            Self::VoxelSize => &[
+                QueryKind::Touches,
+                QueryKind::Deepest,
+                QueryKind::Manifold,
+                QueryKind::Wrench,
+            ],
+            Self::Triangles => &[
+                QueryKind::Deepest,
+                QueryKind::Manifold,
+                QueryKind::Wrench,
+                QueryKind::Trimesh,
+            ],
             Self::Bodies => &[],
         }
     }
 }
 
-impl Ask {
+impl QueryKind {
     const ALL: [Self; 6] = [
         Self::Touches,
         Self::Deepest,
@@ -214,17 +224,17 @@ impl Experiment for Settings {
     fn jobs(&self, quick: bool) -> Vec<Job> {
         let mut jobs = Vec::new();
         for case in Case::ALL {
-            let asks = case.asks().iter().map(|ask| ask.name().to_owned());
+            let kinds = case.queries().iter().map(|kind| kind.name().to_owned());
             let algorithms = self.bodies.algorithms.iter().cloned();
             let algorithms = algorithms.filter(|_| case == Case::Bodies);
-            jobs.extend(asks.chain(algorithms).map(|algorithm| Job {
+            jobs.extend(kinds.chain(algorithms).map(|algorithm| Job {
                 case: case.name().into(),
                 algorithm,
                 seed: 0,
             }));
         }
         if quick {
-            jobs.retain(|job| job.algorithm != Ask::Trimesh.name());
+            jobs.retain(|job| job.algorithm != QueryKind::Trimesh.name());
         }
         jobs
     }
@@ -240,9 +250,11 @@ impl Experiment for Settings {
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let case = Case::ALL.into_iter().find(|case| case.name() == job.case);
         let case = case.ok_or_else(|| format!("no case `{}`", job.case))?;
-        let ask = Ask::ALL.into_iter().find(|ask| ask.name() == job.algorithm);
-        let rows = match ask {
-            Some(ask) => self.times(case, ask, context)?,
+        let kind = QueryKind::ALL
+            .into_iter()
+            .find(|kind| kind.name() == job.algorithm);
+        let rows = match kind {
+            Some(kind) => self.times(case, kind, context)?,
             None => self.steps(&job.algorithm, context)?,
         };
         Measurement::of(&rows, &Preparation::default())

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{Ask, Case, Settings};
+use super::{Case, QueryKind, Settings};
 use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::rows;
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::experiments::shared::power_law::{Labels, Series, color, figure};
@@ -19,9 +19,9 @@ pub(super) fn present(
 ) -> Result<Vec<Block>, Error> {
     let (times, slopes) = (table(tables, "times")?, table(tables, "slopes")?);
     let label = |name: &str| -> String {
-        let ask = Ask::ALL.into_iter().find(|ask| ask.name() == name);
+        let kind = QueryKind::ALL.into_iter().find(|kind| kind.name() == name);
         let listed = algorithms.get(name).map(|a| a.label.clone());
-        ask.map_or_else(|| listed.unwrap_or(name.into()), |ask| ask.label().into())
+        kind.map_or_else(|| listed.unwrap_or(name.into()), |kind| kind.label().into())
     };
     let mut all = Table::new(
         "Slopes: the power of the size that time grows with",
@@ -42,9 +42,9 @@ pub(super) fn present(
         let of_case = || rows(times).filter(|row| row.text("case") == case.name());
         let mut series = Vec::new();
         for (i, name) in names.iter().enumerate() {
-            let of_it = of_case().filter(|row| row.text("algorithm") == *name);
+            let group = of_case().filter(|row| row.text("algorithm") == *name);
             let points =
-                of_it.filter_map(|row| Some((row.number("size")?, row.number("time_us_median")?)));
+                group.filter_map(|row| Some((row.number("size")?, row.number("time_us_median")?)));
             series.push(Series {
                 label: label(name),
                 color: algorithms.get(name).map_or(color(i), |a| a.rgb()),
@@ -75,9 +75,9 @@ pub(super) fn present(
             table.push([
                 size.map_or_else(String::new, |size| size.to_string()),
                 label(&row.text("algorithm")),
-                short(row.number("time_us_median")),
-                short(row.number("time_us_mean")),
-                short(row.number("time_us_p95")),
+                significant(row.number("time_us_median")),
+                significant(row.number("time_us_mean")),
+                significant(row.number("time_us_p95")),
                 fixed(row.number("contacts_mean"), 1),
             ]);
         }

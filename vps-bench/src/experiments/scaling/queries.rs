@@ -12,7 +12,7 @@ use vps_compare::oracle::PlaneOracle;
 use vps_compare::{CollisionAlgorithm, Contacts, Ground, Scene, Trimesh};
 use vps_core::{Asset, Query, Trilinear, Vec3, Weight};
 
-use super::{Ask, Case, Settings, TimeRow};
+use super::{Case, QueryKind, Settings, TimeRow};
 use crate::experiments::shared::orientation::orientation_of;
 use crate::harness::context::Context;
 
@@ -25,7 +25,7 @@ impl Settings {
     pub(super) fn times(
         &self,
         case: Case,
-        ask: Ask,
+        kind: QueryKind,
         context: &Context,
     ) -> Result<Vec<TimeRow>, String> {
         let bunny = context.body(&self.model, self.scale)?;
@@ -38,7 +38,7 @@ impl Settings {
                     let shell =
                         self.asset(&bunny.mesh, self.fixed_voxel_size_m, points, context)?;
                     let count = shell.tree.point_count() as f64;
-                    self.ask_all(count, ask, &shell, &ground, &poses, &mut rows);
+                    self.time_shell(count, kind, &shell, &ground, &poses, &mut rows);
                 }
             }
             Case::Depth => {
@@ -48,7 +48,7 @@ impl Settings {
                 for &depth in &self.depths_m {
                     let poses = self.poses_at(&bunny.oracle, depth);
                     let size = f64::from(depth) * 1e3;
-                    self.ask_all(size, ask, &shell, &ground, &poses, &mut rows);
+                    self.time_shell(size, kind, &shell, &ground, &poses, &mut rows);
                 }
             }
             Case::VoxelSize => {
@@ -58,7 +58,7 @@ impl Settings {
                 let poses = self.poses_on(&bunny.mesh);
                 for &size in &self.voxel_sizes_m {
                     let field = self.asset(&bunny.mesh, size, 100, context)?;
-                    self.ask_all(size * 1e3, ask, &shell, &field, &poses, &mut rows);
+                    self.time_shell(size * 1e3, kind, &shell, &field, &poses, &mut rows);
                 }
             }
             Case::Triangles => {
@@ -69,12 +69,12 @@ impl Settings {
                     let oracle = PlaneOracle::new(&mesh).map_err(|e| e.to_string())?;
                     let poses = self.poses_at(&oracle, self.fixed_depth_m);
                     let size = mesh.triangles().len() as f64;
-                    if ask == Ask::Trimesh {
-                        self.ask_trimesh(size, &mesh, &poses, &mut rows)?;
+                    if kind == QueryKind::Trimesh {
+                        self.time_trimesh(size, &mesh, &poses, &mut rows)?;
                     } else {
                         let voxel_size = self.fixed_voxel_size_m;
                         let shell = self.asset(&mesh, voxel_size, self.fixed_points, context)?;
-                        self.ask_all(size, ask, &shell, &ground, &poses, &mut rows);
+                        self.time_shell(size, kind, &shell, &ground, &poses, &mut rows);
                     }
                 }
             }
@@ -131,10 +131,10 @@ impl Settings {
         (0..self.poses).map(pose).collect()
     }
 
-    fn ask_all(
+    fn time_shell(
         &self,
         size: f64,
-        ask: Ask,
+        kind: QueryKind,
         shell: &Asset<'_>,
         field: &Asset<'_>,
         poses: &[Pose],
@@ -148,13 +148,13 @@ impl Settings {
             rows.push(TimeRow {
                 size,
                 sample,
-                time_us: self.least_time_us(|| ask.execute(&query, self.prediction_m)),
+                time_us: self.least_time_us(|| kind.execute(&query, self.prediction_m)),
                 contacts,
             });
         }
     }
 
-    fn ask_trimesh(
+    fn time_trimesh(
         &self,
         size: f64,
         mesh: &Mesh,
@@ -199,7 +199,7 @@ impl Settings {
     }
 }
 
-impl Ask {
+impl QueryKind {
     fn execute(self, query: &Query<'_, Trilinear<'_>>, prediction: f32) {
         match self {
             Self::Touches => {

@@ -48,13 +48,13 @@ pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tabl
             let Some(sizes) = groups.get(&(case.name().into(), algorithm.into())) else {
                 continue;
             };
-            let of_it: Vec<_> = sizes
+            let group: Vec<_> = sizes
                 .iter()
-                .map(|(bits, rows)| of_one(case, algorithm, f64::from_bits(*bits), rows))
+                .map(|(bits, rows)| summarize_size(case, algorithm, f64::from_bits(*bits), rows))
                 .collect();
             let pairs = |x: fn(&SizeRow<'_>) -> Option<f64>| {
                 power_law_exponent(
-                    of_it
+                    group
                         .iter()
                         .filter_map(|r| Some((x(r)?, r.time_us_median?))),
                 )
@@ -65,7 +65,7 @@ pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tabl
                 slope: pairs(|r| Some(r.size)),
                 slope_by_contacts: pairs(|r| r.contacts_mean),
             });
-            times.extend(of_it);
+            times.extend(group);
         }
     }
     Ok(Tables::from([
@@ -74,7 +74,7 @@ pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tabl
     ]))
 }
 
-fn of_one<'s>(case: Case, algorithm: &'s str, size: f64, rows: &[Row<'_>]) -> SizeRow<'s> {
+fn summarize_size<'s>(case: Case, algorithm: &'s str, size: f64, rows: &[Row<'_>]) -> SizeRow<'s> {
     let column = |name: &str| Sample::of(rows.iter().filter_map(|row| row.number(name)));
     let times = column("time_us");
     SizeRow {
@@ -94,6 +94,6 @@ impl Settings {
         if case == Case::Bodies {
             return self.bodies.algorithms.iter().map(String::as_str).collect();
         }
-        case.asks().iter().map(|ask| ask.name()).collect()
+        case.queries().iter().map(|kind| kind.name()).collect()
     }
 }

@@ -6,7 +6,7 @@ use super::pictures::PICTURES;
 use super::{SHELLS, Settings};
 use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows};
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::report::document::{Block, FigureLink, Table};
@@ -71,13 +71,13 @@ fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
             stored.into(),
             sides.join(" x "),
             fixed(number("values"), 0),
-            short(number("map_mb")),
-            short(number("voxels_s")),
-            short(number("distances_s")),
+            significant(number("map_mb")),
+            significant(number("voxels_s")),
+            significant(number("distances_s")),
             format!(
                 "{} / {}",
-                short(number("near_error_mm")),
-                short(number("far_error_mm"))
+                significant(number("near_error_mm")),
+                significant(number("far_error_mm"))
             ),
         ]);
     }
@@ -118,11 +118,11 @@ fn pointshells<'f>(
             clustering(&row.text("case")).into(),
             fixed(number("points"), 0),
             fixed(number("levels"), 0),
-            short(number("tree_mb")),
-            short(number("points_s")),
-            short(number("tree_s")),
-            short(number("asset_build_s")),
-            short(number("file_mb")),
+            significant(number("tree_mb")),
+            significant(number("points_s")),
+            significant(number("tree_s")),
+            significant(number("asset_build_s")),
+            significant(number("file_mb")),
         ]);
     }
     Ok(table)
@@ -156,7 +156,7 @@ fn clusters(
                         "{}; {}; {}",
                         fixed(row.number("clusters"), 0),
                         fixed(row.number("children_mean"), 1),
-                        short(row.number("radius_mm_mean"))
+                        significant(row.number("radius_mm_mean"))
                     )
                 })
             };

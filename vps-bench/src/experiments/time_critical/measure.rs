@@ -93,11 +93,11 @@ pub(super) fn measure<F: DistanceField>(
         std::hint::black_box(Query::new(tree, field, *pose).time_critical(center, |_| true));
     }
     let mut errors = Errors::default();
-    let mut clock = Clock::default();
+    let mut timing = Timing::default();
     for (number, pose) in poses.0.iter().enumerate() {
-        let (estimate, took) = ask(settings, limit, tree, field, center, pose);
-        clock.ended(took, limit, || {
-            ask(settings, limit, tree, field, center, pose).1
+        let (estimate, took) = query_once(settings, limit, tree, field, center, pose);
+        timing.record_query(took, limit, || {
+            query_once(settings, limit, tree, field, center, pose).1
         });
         errors.complete += usize::from(estimate.is_complete);
         let Limit::Deadline(deadline) = limit else {
@@ -109,14 +109,14 @@ pub(super) fn measure<F: DistanceField>(
             let start = Instant::now();
             let end = start + settings.stop_after(deadline);
             while Instant::now() < end {}
-            clock.idled(start.elapsed(), deadline);
+            timing.record_idle_loop(start.elapsed(), deadline);
         }
     }
-    Ok(row(limit, errors, clock))
+    Ok(row(limit, errors, timing))
 }
 
 /// Queries once and returns the time as well.
-fn ask<F: DistanceField>(
+fn query_once<F: DistanceField>(
     settings: &Settings,
     limit: Limit,
     tree: &PointSphereTree<'_>,
@@ -141,12 +141,12 @@ fn ask<F: DistanceField>(
     (estimate, start.elapsed())
 }
 
-fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
-    let poses = clock.query_us.len();
+fn row(limit: Limit, errors: Errors, timing: Timing) -> BatchRow {
+    let poses = timing.query_us.len();
     let penetration = quantiles(errors.penetration_mm).map(Option::unwrap_or_default);
     let bound = quantiles(errors.bound_mm).map(Option::unwrap_or_default);
     let force = quantiles(errors.force);
-    let query = quantiles(clock.query_us).map(Option::unwrap_or_default);
+    let query = quantiles(timing.query_us).map(Option::unwrap_or_default);
     let has_deadline = matches!(limit, Limit::Deadline(_));
     BatchRow {
         poses,
@@ -163,12 +163,12 @@ fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
         query_us_median: query[0],
         query_us_p99: query[1],
         query_us_max: query[2],
-        overruns: has_deadline.then_some(clock.overruns),
-        overrun_us_max: has_deadline.then_some(clock.overrun_us_max),
-        late_by_itself: has_deadline.then_some(clock.late_by_itself),
-        idle_loops: has_deadline.then_some(clock.idle_loops),
-        idle_overruns: has_deadline.then_some(clock.idle_overruns),
-        idle_overrun_us_max: has_deadline.then_some(clock.idle_overrun_us_max),
+        overruns: has_deadline.then_some(timing.overruns),
+        overrun_us_max: has_deadline.then_some(timing.overrun_us_max),
+        late_by_itself: has_deadline.then_some(timing.late_by_itself),
+        idle_loops: has_deadline.then_some(timing.idle_loops),
+        idle_overruns: has_deadline.then_some(timing.idle_overruns),
+        idle_overrun_us_max: has_deadline.then_some(timing.idle_overrun_us_max),
     }
 }
 
@@ -219,7 +219,7 @@ impl Errors {
 
 /// Times of queries and overruns of deadlines.
 #[derive(Default)]
-struct Clock {
+struct Timing {
     query_us: Vec<f64>,
     overruns: usize,
     overrun_us_max: f64,
@@ -229,29 +229,29 @@ struct Clock {
     idle_overrun_us_max: f64,
 }
 
-impl Clock {
-    fn ended(&mut self, took: Duration, limit: Limit, mut again: impl FnMut() -> Duration) {
+impl Timing {
+    fn record_query(&mut self, took: Duration, limit: Limit, mut again: impl FnMut() -> Duration) {
         self.query_us.push(took.as_secs_f64() * 1e6);
         if let Limit::Deadline(deadline) = limit
             && took > deadline
         {
             self.overruns += 1;
-            self.overrun_us_max = self.overrun_us_max.max(beyond_us(took, deadline));
+            self.overrun_us_max = self.overrun_us_max.max(overrun_us(took, deadline));
             let is_late = (1..TRIES).all(|_| again() > deadline);
             self.late_by_itself += usize::from(is_late);
         }
     }
 
-    fn idled(&mut self, took: Duration, deadline: Duration) {
+    fn record_idle_loop(&mut self, took: Duration, deadline: Duration) {
         self.idle_loops += 1;
         if took > deadline {
             self.idle_overruns += 1;
-            self.idle_overrun_us_max = self.idle_overrun_us_max.max(beyond_us(took, deadline));
+            self.idle_overrun_us_max = self.idle_overrun_us_max.max(overrun_us(took, deadline));
         }
     }
 }
 
-fn beyond_us(took: Duration, deadline: Duration) -> f64 {
+fn overrun_us(took: Duration, deadline: Duration) -> f64 {
     (took - deadline).as_secs_f64() * 1e6
 }
 
@@ -263,19 +263,19 @@ mod tests {
     fn a_query_is_late_by_itself_if_it_never_ends_in_time() {
         let us = Duration::from_micros;
         let limit = Limit::Deadline(us(100));
-        let mut clock = Clock::default();
-        clock.ended(us(100), limit, || us(500));
-        assert_eq!((clock.overruns, clock.late_by_itself), (0, 0));
+        let mut timing = Timing::default();
+        timing.record_query(us(100), limit, || us(500));
+        assert_eq!((timing.overruns, timing.late_by_itself), (0, 0));
         let mut tries = 0;
-        clock.ended(us(130), limit, || {
+        timing.record_query(us(130), limit, || {
             tries += 1;
             us(if tries == TRIES - 1 { 90 } else { 101 })
         });
-        assert_eq!((clock.overruns, clock.late_by_itself), (1, 0));
-        clock.ended(us(120), limit, || us(101));
-        assert_eq!((clock.overruns, clock.late_by_itself), (2, 1));
-        assert!((clock.overrun_us_max - 30.0).abs() < 1e-6);
-        clock.ended(us(9000), Limit::None, || us(9000));
-        assert_eq!((clock.overruns, clock.query_us.len()), (2, 4));
+        assert_eq!((timing.overruns, timing.late_by_itself), (1, 0));
+        timing.record_query(us(120), limit, || us(101));
+        assert_eq!((timing.overruns, timing.late_by_itself), (2, 1));
+        assert!((timing.overrun_us_max - 30.0).abs() < 1e-6);
+        timing.record_query(us(9000), Limit::None, || us(9000));
+        assert_eq!((timing.overruns, timing.query_us.len()), (2, 4));
     }
 }

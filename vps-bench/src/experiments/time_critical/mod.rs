@@ -42,7 +42,7 @@ pub(crate) struct Settings {
     deadline_us: Vec<u64>,
     /// Time before the deadline at which the query is told to end.
     reserve_us: u64,
-    /// Number of continuation callbacks between two looks at the clock.
+    /// Number of continuation callbacks between two readings of the clock.
     clock_every: u32,
     poses_per_batch: u32,
     /// Batches of poses for a deadline, and for a number of points.

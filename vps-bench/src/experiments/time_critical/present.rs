@@ -8,7 +8,7 @@ use polars::prelude::DataFrame;
 use super::{Limit, Settings};
 use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows_of};
-use crate::data::number_format::{fixed, short};
+use crate::data::number_format::{fixed, significant};
 use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
@@ -74,10 +74,10 @@ impl Presentation<'_> {
     }
 
     /// Median, 99th percentile and largest.
-    fn three(row: &Row<'_>, what: &str, factor: f64) -> String {
+    fn quantiles(row: &Row<'_>, what: &str, factor: f64) -> String {
         let number = |q: &str| {
             let value = row.number(&format!("{what}_{q}"));
-            short(value.map(|v| factor * v))
+            significant(value.map(|v| factor * v))
         };
         QUANTILES.map(|(q, ..)| number(q)).join(" / ")
     }
@@ -107,10 +107,10 @@ impl Presentation<'_> {
                     _ => "no limit".into(),
                 },
                 format!("{} %", fixed(row.number("complete_percent"), 1)),
-                Self::three(&row, "penetration_error_mm", 1.0),
-                Self::three(&row, "bound_error_mm", 1.0),
-                Self::three(&row, "force_error", 100.0),
-                Self::three(&row, "query_us", 1.0),
+                Self::quantiles(&row, "penetration_error_mm", 1.0),
+                Self::quantiles(&row, "bound_error_mm", 1.0),
+                Self::quantiles(&row, "force_error", 100.0),
+                Self::quantiles(&row, "query_us", 1.0),
             ]);
         }
         Ok(Block::Table(table))
@@ -159,8 +159,8 @@ impl Presentation<'_> {
                 fixed(row.number("late_by_itself"), 0),
                 of_all(&row, "idle_overruns", "idle_loops"),
                 fixed(row.number("idle_overrun_us_max"), 0),
-                Self::three(&row, "penetration_error_mm", 1.0),
-                Self::three(&row, "force_error", 100.0),
+                Self::quantiles(&row, "penetration_error_mm", 1.0),
+                Self::quantiles(&row, "force_error", 100.0),
             ]);
         }
         Ok(Block::Table(table))

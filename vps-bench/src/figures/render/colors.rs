@@ -15,7 +15,7 @@ pub(crate) const ORANGE: Color = rgb(0xe6_9f00);
 pub(crate) const VERMILION: Color = rgb(0xd5_5e00);
 
 /// The palette of Okabe and Ito.
-const DISTINCT: [Color; 7] = [
+const CATEGORICAL: [Color; 7] = [
     SKY,
     ORANGE,
     rgb(0x00_9e73),
@@ -42,9 +42,9 @@ const fn rgb(code: u32) -> Color {
 
 /// A categorical colour, unlike those of neighbouring numbers. After seven the colours repeat,
 /// lighter or darker.
-pub(crate) fn distinct(n: usize) -> Color {
-    let color = DISTINCT[n % DISTINCT.len()];
-    match n / DISTINCT.len() % 3 {
+pub(crate) fn categorical(n: usize) -> Color {
+    let color = CATEGORICAL[n % CATEGORICAL.len()];
+    match n / CATEGORICAL.len() % 3 {
         0 => color,
         1 => color.lerp(WHITE, 0.45),
         _ => color * 0.6,

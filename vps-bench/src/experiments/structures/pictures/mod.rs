@@ -16,7 +16,7 @@ use vps_build::{BuildOptions, Mesh};
 use vps_core::{Asset, Pose3, Vec3};
 
 use super::{Settings, vps};
-use crate::data::number_format::grouped;
+use crate::data::number_format::group_digits;
 use crate::figures::render::canvas::Canvas;
 use crate::figures::render::colors::Color;
 use crate::figures::render::figure_sheet::{Anchor, FigureSheet};
@@ -235,5 +235,5 @@ impl Panels {
 
 /// A count with its digits in groups.
 fn count(n: usize) -> String {
-    grouped(&n.to_string())
+    group_digits(&n.to_string())
 }

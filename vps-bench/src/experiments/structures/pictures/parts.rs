@@ -29,7 +29,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let hulls = parts.shapes().iter();
     for (i, (pose, part)) in hulls.enumerate() {
         if let Some(part) = part.as_convex_polyhedron() {
-            polyhedron(&mut canvas, &view, part, *pose, colors::distinct(i));
+            polyhedron(&mut canvas, &view, part, *pose, colors::categorical(i));
         }
     }
     let title = format!("(b) convex decomposition: {} parts", parts.shapes().len());
@@ -43,7 +43,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     }
     let mut canvas = panels.canvas();
     shells::points(&mut canvas, &view, &subject.fine, |point| {
-        colors::distinct(segment[point])
+        colors::categorical(segment[point])
     });
     let segments = count(tree.level(level).len());
     let title = format!("(c) segments of level {level}: {segments}");
