@@ -1,18 +1,18 @@
 use rapier3d::parry::shape::{Compound, ConvexPolyhedron, Shape};
 use vps_rapier::VpsShape;
 
-/// What shapes take in memory.
+/// Memory of shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// In bytes.
+    /// Size in bytes.
     pub bytes: usize,
-    /// Whether that is counted from outside, by the numbers of things a shape of parry holds.
+    /// Whether the size is estimated from the numbers of elements of a parry shape.
     pub is_estimate: bool,
 }
 
 impl Memory {
-    /// Of a shape. VPS shapes are known to the byte; triangle meshes and voxels are counted by
-    /// parry, hulls and compounds by what they can be asked for.
+    /// The memory of a shape. VPS shapes are exact; triangle meshes and voxels are counted by
+    /// parry, hulls and compounds by their accessible elements.
     pub fn of(shape: &dyn Shape) -> Self {
         if let Some(vps) = shape.as_shape::<VpsShape>() {
             let asset = vps.asset();
@@ -36,7 +36,7 @@ impl Memory {
         }
     }
 
-    /// Of two shapes.
+    /// The memory of both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_holds_more_takes_more() {
+    fn larger_shapes_take_more_memory() {
         let cuboid = Memory::of(&*SharedShape::cuboid(1.0, 1.0, 1.0));
         assert_eq!(
             (cuboid.bytes, cuboid.is_estimate),

@@ -1,14 +1,15 @@
-//! The report as one HTML file that needs nothing beside it: figures are in it, and no scripts.
+//! The report as one self-contained HTML file: figures are embedded, and there are no scripts.
 
 use std::path::Path;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{OTHERS, Other};
-use crate::claims::{Outcome, Verdict};
-use crate::experiments::Error;
-use crate::page::{Block, FigureLink, QUICK, Section, Table};
+use crate::error::Error;
+use crate::report::claims::{Outcome, Verdict};
+use crate::report::document::{
+    Block, FigureLink, OTHER_REPORTS, OtherReport, QUICK, Section, Table,
+};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -16,7 +17,7 @@ const STYLE: &str = include_str!("report.css");
 /// from `folder`, where the report will lie.
 pub(super) fn report(
     sections: &[Section],
-    others: &[Other],
+    others: &[OtherReport],
     folder: &Path,
 ) -> Result<String, Error> {
     let mut parts = Vec::new();
@@ -51,7 +52,7 @@ pub(super) fn report(
                         @for section in sections {
                             li { a href={ "#" (section.name) } { (section.title) } }
                         }
-                        @if !others.is_empty() { li { a href="#others" { (OTHERS) } } }
+                        @if !others.is_empty() { li { a href="#others" { (OTHER_REPORTS) } } }
                     }
                 }
                 main {
@@ -64,7 +65,7 @@ pub(super) fn report(
                     @for part in &parts { (part) }
                     @if !others.is_empty() {
                         section id="others" {
-                            h2 { (OTHERS) }
+                            h2 { (OTHER_REPORTS) }
                             ul {
                                 @for other in others {
                                     li { a href=(other.file) { (other.title) } }
@@ -79,7 +80,7 @@ pub(super) fn report(
     Ok(page.into_string())
 }
 
-/// How many claims came out how.
+/// The number of claims by outcome.
 fn count(verdicts: &[&Verdict]) -> String {
     let of = |outcome| verdicts.iter().filter(|v| v.outcome == outcome).count();
     let otherwise = verdicts.iter().filter(|v| !v.is_as_expected()).count();
@@ -138,7 +139,7 @@ fn section(section: &Section, folder: &Path) -> Result<Markup, Error> {
     })
 }
 
-/// Paragraphs; what stands between backticks is code.
+/// Paragraphs; text between backticks is code.
 fn prose(text: &str) -> Markup {
     html! {
         @for paragraph in text.split("\n\n").map(str::trim).filter(|p| !p.is_empty()) {
@@ -153,7 +154,7 @@ fn prose(text: &str) -> Markup {
 
 /// A table in a box of its own, which scrolls if the table is wider than the page.
 fn table(table: &Table) -> Markup {
-    // Numbers stand below each other; a dash stands for a missing one.
+    // Columns of numbers are aligned; a dash is a missing number.
     let is_number = |column: usize| {
         let starts =
             |cell: &String| cell.starts_with(|c: char| c.is_ascii_digit() || "-–".contains(c));
@@ -201,7 +202,7 @@ fn table(table: &Table) -> Markup {
     }
 }
 
-/// A figure within the page, which opens by itself when it is clicked.
+/// An embedded figure, which opens alone when it is clicked.
 fn figure(link: &FigureLink, name: &str, folder: &Path) -> Result<Markup, Error> {
     let path = folder.join(name).join(&link.file);
     let bytes = std::fs::read(&path).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -223,7 +224,7 @@ fn figure(link: &FigureLink, name: &str, folder: &Path) -> Result<Markup, Error>
     })
 }
 
-/// A row a claim; with the experiment it is judged by if there are several.
+/// A row for each claim; with its experiment if there are several.
 fn claims(verdicts: &[(&Section, &Verdict)], with_experiment: bool) -> Markup {
     let row = |section: &Section, verdict: &Verdict| {
         let claim = &verdict.claim;
@@ -262,7 +263,7 @@ fn claims(verdicts: &[(&Section, &Verdict)], with_experiment: bool) -> Markup {
     }
 }
 
-/// In colour, and in words for those who see none.
+/// The outcome in colour and in words.
 fn outcome(verdict: &Verdict) -> Markup {
     let (class, sign) = match verdict.outcome {
         Outcome::Holds => ("outcome holds", "✓"),

@@ -2,12 +2,11 @@
 
 use std::fmt::Write;
 
-use super::{OTHERS, Other};
-use crate::claims::Verdict;
-use crate::page::{Block, QUICK, Section, Table};
+use crate::report::claims::Verdict;
+use crate::report::document::{Block, OTHER_REPORTS, OtherReport, QUICK, Section, Table};
 
 /// All sections, with a table of verdicts first and a list of other reports last.
-pub(super) fn report(sections: &[Section], others: &[Other]) -> String {
+pub(super) fn report(sections: &[Section], others: &[OtherReport]) -> String {
     let mut text = String::from("# Report\n");
     let all: Vec<_> = sections.iter().flat_map(|s| &s.verdicts).collect();
     if !all.is_empty() {
@@ -17,7 +16,7 @@ pub(super) fn report(sections: &[Section], others: &[Other]) -> String {
         let _ = write!(text, "\n{}", self::section(section));
     }
     if !others.is_empty() {
-        let _ = write!(text, "\n## {OTHERS}\n\n");
+        let _ = write!(text, "\n## {OTHER_REPORTS}\n\n");
     }
     for other in others {
         let _ = writeln!(text, "* [{}]({})", other.title, other.file);
@@ -66,7 +65,7 @@ fn section(section: &Section) -> String {
     text
 }
 
-/// A row a claim.
+/// A row for each claim.
 pub(super) fn verdicts(verdicts: &[&Verdict]) -> Table {
     let mut table = Table::new(
         "What becomes of the claims",

@@ -1,4 +1,4 @@
-//! An algorithm seen from outside: a process that is asked, and ended when it takes too much.
+//! An algorithm in a supervised process, which is ended if it exceeds its limits.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -9,27 +9,27 @@ use serde::de::DeserializeOwned;
 
 use super::Error;
 use super::args::{Args, Name};
-use super::worker::{Asked, Made, Question, Ready};
+use super::worker::{PreparedInfo, QueryRequest, QueryResult, Ready};
 
-/// How often a process at work is looked at.
-const WATCH: Duration = Duration::from_millis(20);
+/// Interval of checks of a working process.
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
-/// An algorithm that is prepared, or why it could not be.
+/// An algorithm, prepared or failed.
 pub(super) struct Candidate {
     pub(super) name: Name,
     pub(super) prepare_s: f64,
-    pub(super) made: Result<Made, String>,
-    worker: Worker,
+    pub(super) made: Result<PreparedInfo, String>,
+    worker: WorkerProcess,
 }
 
 impl Candidate {
-    /// Prepares an algorithm, which takes its part of the budget.
+    /// Prepares an algorithm, which uses a part of its budget.
     pub(super) fn prepare(name: Name, args: &Args) -> Result<Self, Error> {
-        let mut worker = Worker::start(name, args)?;
-        let made: Result<Made, String> = worker.hear().and_then(|Ready| {
-            // Reading the meshes does not count.
+        let mut worker = WorkerProcess::start(name, args)?;
+        let made: Result<PreparedInfo, String> = worker.receive().and_then(|Ready| {
+            // Reading the meshes is not counted.
             worker.spent = Duration::ZERO;
-            worker.hear().and_then(|made| made)
+            worker.receive().and_then(|made| made)
         });
         let taken_s = worker.spent.as_secs_f64();
         Ok(Self {
@@ -40,27 +40,27 @@ impl Candidate {
         })
     }
 
-    /// What there is at a pose, or why there is no answer.
-    pub(super) fn ask(&mut self, question: &Question) -> Result<Asked, String> {
+    /// Queries the contacts at a pose.
+    pub(super) fn query(&mut self, request: &QueryRequest) -> Result<QueryResult, String> {
         self.made.as_ref().map_err(String::clone)?;
-        self.worker.tell(question)?;
-        self.worker.hear().and_then(|asked| asked)
+        self.worker.send(request)?;
+        self.worker.receive().and_then(|result| result)
     }
 }
 
-/// A process, the time it has spent, and what it may take.
-struct Worker {
+/// A worker process, the time it has spent, and its limits.
+struct WorkerProcess {
     child: Child,
     input: ChildStdin,
     lines: Receiver<String>,
     time_limit_s: f64,
     memory_limit_mib: u64,
     spent: Duration,
-    /// Why it was ended.
+    /// The reason why it was ended.
     ended: Option<String>,
 }
 
-impl Worker {
+impl WorkerProcess {
     fn start(name: Name, args: &Args) -> Result<Self, Error> {
         let mut child = Command::new(std::env::current_exe()?)
             .arg(format!("--worker={name}"))
@@ -91,15 +91,16 @@ impl Worker {
         })
     }
 
-    fn tell(&mut self, question: &Question) -> Result<(), String> {
-        let line = serde_json::to_string(question).map_err(|e| e.to_string())?;
-        // One that has ended is asked in vain; what it ended of is known when it is listened to.
+    fn send(&mut self, request: &QueryRequest) -> Result<(), String> {
+        let line = serde_json::to_string(request).map_err(|e| e.to_string())?;
+        // A process that has ended does not read it; the reason is found when its answer is
+        // received.
         let _ = writeln!(self.input, "{line}").and_then(|()| self.input.flush());
         Ok(())
     }
 
-    /// Waits for a line, unless it takes more than there is left.
-    fn hear<T: DeserializeOwned>(&mut self) -> Result<T, String> {
+    /// Waits for a line, within the limits.
+    fn receive<T: DeserializeOwned>(&mut self) -> Result<T, String> {
         self.check(Duration::ZERO);
         let begin = Instant::now();
         let line = self.wait(begin);
@@ -112,7 +113,7 @@ impl Worker {
             if let Some(why) = &self.ended {
                 return Err(why.clone());
             }
-            match self.lines.recv_timeout(WATCH) {
+            match self.lines.recv_timeout(CHECK_INTERVAL) {
                 Ok(line) => return Ok(line),
                 Err(RecvTimeoutError::Timeout) => self.check(begin.elapsed()),
                 Err(RecvTimeoutError::Disconnected) => {
@@ -123,7 +124,7 @@ impl Worker {
         }
     }
 
-    /// Ends the process if with so much more time it has taken more than it may.
+    /// Ends the process if with `more` time spent it exceeds its limits.
     fn check(&mut self, more: Duration) {
         let memory = peak_memory_mib(self.child.id());
         let (time_s, memory_mib) = (self.time_limit_s, self.memory_limit_mib);
@@ -141,14 +142,14 @@ impl Worker {
     }
 }
 
-impl Drop for Worker {
+impl Drop for WorkerProcess {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// The most memory a process has had, where the system tells (Linux).
+/// The peak memory of a process, where the system reports it (Linux).
 fn peak_memory_mib(process: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let peak = status

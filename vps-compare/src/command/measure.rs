@@ -1,15 +1,15 @@
-//! Every algorithm at every pose.
+//! Measures every algorithm at every pose.
 
 use rapier3d::math::Pose;
 use serde::Serialize;
 use vps_compare::oracle::Exact;
 
 use super::candidate::Candidate;
+use super::problem::Problem;
 use super::progress::Progress;
-use super::setting::Setting;
-use super::worker::{Asked, Question};
+use super::worker::{QueryRequest, QueryResult};
 
-/// What an algorithm said at a pose.
+/// The answer of an algorithm at a pose.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Row {
     /// Counted from 1.
@@ -25,20 +25,20 @@ pub(super) struct Row {
     /// `ok`, or why there is no answer.
     pub(super) status: String,
     pub(super) contacts: Option<usize>,
-    /// Of the deepest contact; empty if there is none within the prediction.
+    /// Penetration of the deepest contact; empty if there is none within the prediction.
     pub(super) penetration_m: Option<f64>,
     pub(super) query_ns: Option<u64>,
     /// Empty if a mesh is open.
     pub(super) exact_penetration_m: Option<f64>,
-    /// By how much the exact one may be larger.
+    /// How much larger the exact penetration may be.
     pub(super) exact_uncertainty_m: Option<f64>,
-    /// How far the two penetrations are from each other; empty if the exact one is uncertain.
+    /// Absolute difference of the two penetrations; empty if the exact one is uncertain.
     pub(super) error_m: Option<f64>,
-    /// Empty if there is no answer.
+    /// Verdict on the touch; empty without an answer.
     pub(super) answer: Option<Answer>,
 }
 
-/// Whether the solids touch, as an algorithm has it.
+/// Whether the algorithm is right that the solids touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Answer {
@@ -51,21 +51,21 @@ pub(super) enum Answer {
     Unknown,
 }
 
-/// Asks all algorithms, pose by pose, so that a slow minute of the machine meets all.
+/// Queries all algorithms, pose by pose, so that a slow minute of the machine affects all of them.
 pub(super) fn measure(
-    setting: &Setting,
+    problem: &Problem,
     candidates: &mut [Candidate],
     progress: &Progress,
 ) -> Vec<Row> {
     let mut rows = Vec::new();
-    let count = setting.poses.len();
-    for (number, (pose, exact)) in (1..).zip(&setting.poses) {
-        let question = Question::of(pose, setting.prediction_m);
+    let count = problem.poses.len();
+    for (number, (pose, exact)) in (1..).zip(&problem.poses) {
+        let request = QueryRequest::of(pose, problem.prediction_m);
         for candidate in &mut *candidates {
             progress.set(format!("pose {number} of {count}: {}", candidate.name));
-            let asked = candidate.ask(&question);
+            let result = candidate.query(&request);
             let name = candidate.name.to_string();
-            rows.push(Row::of(number, pose, exact.as_ref(), setting, name, asked));
+            rows.push(Row::of(number, pose, exact.as_ref(), problem, name, result));
         }
     }
     rows
@@ -76,14 +76,14 @@ impl Row {
         number: usize,
         pose: &Pose,
         exact: Option<&Exact>,
-        setting: &Setting,
+        problem: &Problem,
         algorithm: String,
-        asked: Result<Asked, String>,
+        result: Result<QueryResult, String>,
     ) -> Self {
-        let status = asked.as_ref().err().cloned();
-        let asked = asked.ok();
-        let penetration_m = asked.as_ref().and_then(|a| a.penetration_m);
-        let certain = exact.filter(|exact| setting.is_certain(exact));
+        let status = result.as_ref().err().cloned();
+        let result = result.ok();
+        let penetration_m = result.as_ref().and_then(|a| a.penetration_m);
+        let certain = exact.filter(|exact| problem.is_certain(exact));
         let error = |(found, exact): (f64, &Exact)| (found - exact.penetration_m).abs();
         Self {
             pose: number,
@@ -96,13 +96,13 @@ impl Row {
             qw: pose.rotation.w,
             algorithm,
             status: status.unwrap_or_else(|| "ok".into()),
-            contacts: asked.as_ref().map(|a| a.contacts),
+            contacts: result.as_ref().map(|a| a.contacts),
             penetration_m,
-            query_ns: asked.as_ref().map(|a| a.query_ns),
+            query_ns: result.as_ref().map(|a| a.query_ns),
             exact_penetration_m: exact.map(|e| e.penetration_m),
             exact_uncertainty_m: exact.map(|e| e.uncertainty_m),
             error_m: penetration_m.zip(certain).map(error),
-            answer: asked.map(|_| Answer::of(penetration_m, certain, setting.tolerance_m)),
+            answer: result.map(|_| Answer::of(penetration_m, certain, problem.tolerance_m)),
         }
     }
 }

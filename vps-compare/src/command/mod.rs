@@ -1,13 +1,13 @@
-//! What the command does: two meshes and poses to measurements, those to a summary.
+//! The command: measures algorithms on two meshes at many poses, and summarizes the measurements.
 
-mod algorithms;
 mod args;
 mod candidate;
-mod guard;
+mod catch_panic;
 mod measure;
 mod poses;
+mod prepare;
+mod problem;
 mod progress;
-mod setting;
 mod summary;
 mod table;
 mod worker;
@@ -16,11 +16,11 @@ pub(crate) use args::Args;
 
 use candidate::Candidate;
 use measure::measure;
+use problem::Problem;
 use progress::Progress;
-use setting::Setting;
 use summary::Summary;
 
-/// One line for people.
+/// The error that ends the command: one line for people.
 type Error = Box<dyn std::error::Error>;
 
 pub(crate) fn run(args: &Args) -> Result<(), Error> {
@@ -30,13 +30,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Error> {
     args.check()?;
     let progress = Progress::new()?;
     progress.set("reading the meshes".into());
-    let setting = Setting::of(args, &progress)?;
+    let problem = Problem::of(args, &progress)?;
     let mut candidates = Vec::new();
     for name in args.algorithms() {
         progress.set(format!("preparing {name}"));
         candidates.push(Candidate::prepare(name, args)?);
     }
-    let rows = measure(&setting, &mut candidates, &progress);
+    let rows = measure(&problem, &mut candidates, &progress);
     drop(progress);
     if let Some(path) = &args.csv {
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Error> {
         let bytes = writer.into_inner().map_err(|e| e.into_error())?;
         vps_build::write_atomically(path, &bytes)?;
     }
-    let summary = Summary::of(args, &setting, &candidates, &rows);
+    let summary = Summary::of(args, &problem, &candidates, &rows);
     if args.json {
         println!("{}", serde_json::to_string_pretty(&summary)?);
     } else {

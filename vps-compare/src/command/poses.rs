@@ -13,10 +13,10 @@ use super::Error;
 
 const COLUMNS: [&str; 7] = ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"];
 
-/// By how much the length of a rotation may differ from one.
-const ROUNDED: f32 = 1e-3;
+/// Largest difference of the length of a rotation from one.
+const LENGTH_TOLERANCE: f32 = 1e-3;
 
-/// Reads a CSV file with a pose a row.
+/// Reads a CSV file with a pose per row.
 pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
     let name = path.display();
     let bytes = std::fs::read(path).map_err(|e| format!("{name}: {e}"))?;
@@ -57,7 +57,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
         let [x, y, z, qx, qy, qz, qw] = values;
         let rotation = Rotation::from_xyzw(qx, qy, qz, qw);
         let length = rotation.length();
-        if (length - 1.0).abs() > ROUNDED {
+        if (length - 1.0).abs() > LENGTH_TOLERANCE {
             return Err(format!(
                 "{name}:{line}: qx, qy, qz, qw is no rotation: its length must be 1, not {length}"
             )
@@ -71,15 +71,15 @@ pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
     Ok(poses)
 }
 
-/// How often a direction is drawn in which the solids do not meet before that is given up.
-const MOST_DRAWS: usize = 1000;
+/// Largest number of drawn directions in which the solids do not meet.
+const MAX_DRAWS: usize = 1000;
 
-/// How close to touching is close enough, as a part of the size of both.
+/// Separation of touching solids, relative to the size of both.
 const TOUCHING: f64 = 1e-5;
 
-/// Poses around those where B touches A. Orientation and direction are random; B comes from afar
-/// along the direction to where it first touches A. From there it goes on by a distance or back: the
-/// i-th of `count` poses by a random one of the i-th of `count` equal parts of -`spread_m` to
+/// Random poses around first contact. Orientation and direction are random; B is moved from afar
+/// along the direction to where it first touches A, and then further or back by a distance: that of
+/// the i-th of `count` poses is random within the i-th of `count` equal parts of -`spread_m` to
 /// `spread_m`.
 pub(super) fn random(
     [mesh_a, mesh_b]: [&Mesh; 2],
@@ -99,7 +99,7 @@ pub(super) fn random(
     let mut draws = 0;
     while poses.len() < count {
         draws += 1;
-        if draws > MOST_DRAWS + count {
+        if draws > MAX_DRAWS + count {
             return Err("no random pose lets the meshes touch: give poses by --poses".into());
         }
         let turn = rotation([rng.random(), rng.random(), rng.random()]);
@@ -109,7 +109,7 @@ pub(super) fn random(
             let center = center_a.as_vec3() + towards * away as f32;
             Pose::from_parts(center - turn * center_b.as_vec3(), turn)
         };
-        // Along a line the solids cannot meet before they have come as close as they are apart.
+        // Conservative advancement: the solids cannot meet within their separation.
         let mut away = far;
         let touches = loop {
             let separation = oracle.separation(&at(away));
@@ -129,7 +129,7 @@ pub(super) fn random(
     Ok(poses)
 }
 
-/// A rotation out of all with the same chance (Shoemake, 1992).
+/// A uniformly distributed rotation (Shoemake, 1992).
 fn rotation([u, v, w]: [f32; 3]) -> Rotation {
     let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
     let ((sv, cv), (sw, cw)) = ((TAU * v).sin_cos(), (TAU * w).sin_cos());

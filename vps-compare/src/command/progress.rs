@@ -1,4 +1,4 @@
-//! What the command is at: a bar on a terminal, a line now and then in a log.
+//! Progress of the command: a bar on a terminal, a line now and then in a log.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -10,7 +10,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 use super::Error;
 
-/// How often a log hears of it; what takes less time leaves no line.
+/// Interval of the lines of a log; shorter tasks leave none.
 const LOG_EVERY: Duration = Duration::from_secs(10);
 
 /// Shown until it is dropped.
@@ -20,7 +20,7 @@ pub(super) enum Progress {
 }
 
 impl Progress {
-    /// On standard error.
+    /// Progress on standard error.
     pub(super) fn new() -> Result<Self, Error> {
         if !std::io::stderr().is_terminal() {
             return Ok(Self::Log(Log::new(LOG_EVERY, |line| eprintln!("{line}"))));
@@ -31,7 +31,7 @@ impl Progress {
         Ok(Self::Bar(bar))
     }
 
-    /// What is done from now on.
+    /// Sets the current task.
     pub(super) fn set(&self, message: String) {
         match self {
             Self::Bar(bar) => bar.set_message(message),
@@ -48,7 +48,7 @@ impl Drop for Progress {
     }
 }
 
-/// A thread that writes what is done, until it is dropped.
+/// A thread that writes the current task until it is dropped.
 pub(super) struct Log {
     message: Arc<Mutex<String>>,
     end: Option<Sender<()>>,
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_hears_what_is_done_now() {
+    fn a_log_gets_the_current_task() {
         let (written, lines) = channel();
         let log = Log::new(Duration::from_millis(1), move |line| {
             let _ = written.send(line);

@@ -1,4 +1,4 @@
-//! What the rows say of each algorithm.
+//! Summarizes the rows of each algorithm.
 
 use std::path::Path;
 
@@ -8,9 +8,9 @@ use vps_build::Mesh;
 use super::args::Args;
 use super::candidate::Candidate;
 use super::measure::{Answer, Row};
-use super::setting::Setting;
+use super::problem::Problem;
 
-/// Everything the command tells.
+/// The summary the command prints.
 #[derive(Serialize)]
 pub(super) struct Summary {
     pub(super) version: &'static str,
@@ -26,7 +26,7 @@ pub(super) struct Summary {
     pub(super) prediction_m: f64,
     pub(super) tolerance_m: f64,
     pub(super) repeat: u32,
-    /// At how many poses the exact penetration is known to within `exact_uncertainty_m`.
+    /// Number of poses whose exact penetration is known to within `exact_uncertainty_m`.
     pub(super) exact: usize,
     pub(super) exact_uncertainty_m: Option<f64>,
     /// Why it is not known at all poses.
@@ -39,19 +39,20 @@ pub(super) struct MeshSummary {
     pub(super) file: String,
     pub(super) triangles: usize,
     pub(super) extents_m: [f64; 3],
-    /// Whether it was a solid as it stood; otherwise what is exact is so for the repaired one.
+    /// Whether it was a solid without repair; otherwise exact values are those of the repaired
+    /// mesh.
     pub(super) watertight: bool,
-    /// Whether its holes were left open: what is inside is a guess, and nothing exact.
+    /// Whether its holes were left open, so that nothing is exact.
     pub(super) open: bool,
 }
 
-/// What an algorithm is and did. Times, contacts and errors are of the queries that were answered.
+/// Sizes and measurements of an algorithm. Times, contacts and errors are of answered queries.
 #[derive(Serialize)]
 pub(super) struct AlgorithmSummary {
     pub(super) algorithm: String,
-    /// `ok`, or the first reason why there was no answer.
+    /// `ok`, or the reason of the first query without an answer.
     pub(super) status: String,
-    /// What A and B became, such as a number of points.
+    /// Sizes of A and B by name, such as a number of points.
     #[serde(serialize_with = "as_map")]
     pub(super) size_a: Vec<(String, usize)>,
     #[serde(serialize_with = "as_map")]
@@ -63,11 +64,11 @@ pub(super) struct AlgorithmSummary {
     pub(super) query_median_ns: Option<f64>,
     pub(super) query_p99_ns: Option<f64>,
     pub(super) contacts_mean: Option<f64>,
-    /// At how many poses there was a contact to compare.
+    /// Number of poses with a contact to compare.
     pub(super) compared: usize,
     pub(super) error_median_m: Option<f64>,
     pub(super) error_max_m: Option<f64>,
-    /// At how many poses it is known whether the answer is right.
+    /// Number of poses at which it is known whether the answer is right.
     pub(super) judged: usize,
     pub(super) missed: usize,
     pub(super) false_touches: usize,
@@ -76,16 +77,16 @@ pub(super) struct AlgorithmSummary {
 impl Summary {
     pub(super) fn of(
         args: &Args,
-        setting: &Setting,
+        problem: &Problem,
         candidates: &[Candidate],
         rows: &[Row],
     ) -> Self {
-        let exact = || setting.poses.iter().filter_map(|(_, exact)| *exact);
+        let exact = || problem.poses.iter().filter_map(|(_, exact)| *exact);
         let (certain, uncertain): (Vec<_>, Vec<_>) = exact()
-            .map(|e| (setting.is_certain(&e), e.uncertainty_m))
+            .map(|e| (problem.is_certain(&e), e.uncertainty_m))
             .partition(|(is_certain, _)| *is_certain);
         let most = |of: &[(bool, f64)]| of.iter().map(|(_, m)| *m).reduce(f64::max);
-        let open = match setting.is_open {
+        let open = match problem.is_open {
             [true, true] => Some("A and B"),
             [true, false] => Some("A"),
             [false, true] => Some("B"),
@@ -103,16 +104,16 @@ impl Summary {
         let algorithm = |candidate| AlgorithmSummary::of(candidate, rows);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            mesh_a: MeshSummary::of(&args.mesh_a, &setting.mesh_a, setting, 0),
-            mesh_b: MeshSummary::of(&args.mesh_b, &setting.mesh_b, setting, 1),
+            mesh_a: MeshSummary::of(&args.mesh_a, &problem.mesh_a, problem, 0),
+            mesh_b: MeshSummary::of(&args.mesh_b, &problem.mesh_b, problem, 1),
             poses_file: args.poses.as_ref().map(|path| path.display().to_string()),
             seed: args.poses.is_none().then_some(args.seed),
-            spread_m: setting.spread_m,
-            poses: setting.poses.len(),
+            spread_m: problem.spread_m,
+            poses: problem.poses.len(),
             apart: exact().filter(|e| e.penetration_m < 0.0).count(),
             overlapping: exact().filter(|e| e.penetration_m > 0.0).count(),
-            prediction_m: setting.prediction_m,
-            tolerance_m: setting.tolerance_m,
+            prediction_m: problem.prediction_m,
+            tolerance_m: problem.tolerance_m,
             repeat: args.repeat,
             exact: certain.len(),
             exact_uncertainty_m: most(&certain),
@@ -123,15 +124,15 @@ impl Summary {
 }
 
 impl MeshSummary {
-    /// Of the first or the second mesh.
-    fn of(path: &Path, mesh: &Mesh, setting: &Setting, which: usize) -> Self {
+    /// The summary of the first or the second mesh.
+    fn of(path: &Path, mesh: &Mesh, problem: &Problem, which: usize) -> Self {
         let (low, high) = mesh.bounds();
         Self {
             file: path.display().to_string(),
             triangles: mesh.triangles().len(),
             extents_m: (high - low).to_array(),
-            watertight: setting.watertight[which],
-            open: setting.is_open[which],
+            watertight: problem.watertight[which],
+            open: problem.is_open[which],
         }
     }
 }
@@ -179,7 +180,7 @@ fn as_map<S: Serializer>(size: &[(String, usize)], serializer: S) -> Result<S::O
     serializer.collect_map(size.iter().map(|(name, number)| (name, number)))
 }
 
-/// Between the two values next to it, in proportion.
+/// The quantile `part` from 0 to 1, interpolated between neighbours.
 fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
     let place = part * (sorted.len().checked_sub(1)?) as f64;
     let (low, high) = (

@@ -1,5 +1,5 @@
-//! An algorithm at work, in a process of its own: it reads the meshes, prepares, and answers a
-//! question a line.
+//! The worker process of an algorithm: it reads the meshes, prepares, and answers a request per
+//! line.
 
 use std::io::{BufRead, Write};
 use std::sync::mpsc::{Receiver, channel};
@@ -10,66 +10,66 @@ use serde::{Deserialize, Serialize};
 use vps_compare::{Contacts, Prepared};
 
 use super::args::{Args, Name};
-use super::guard::guarded;
-use super::{Error, algorithms, setting};
+use super::catch_panic::catch_panic;
+use super::{Error, prepare, problem};
 
-/// The first line of an answer: the meshes are read, the work begins.
+/// The first line of output: the meshes are read and the work begins.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) struct Ready;
 
-/// What became of the two meshes.
+/// Time, sizes and memory of the prepared meshes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub(super) struct Made {
+pub(super) struct PreparedInfo {
     pub(super) prepare_s: f64,
-    /// Numbers by name, such as that of points.
+    /// Sizes by name, such as a number of points.
     pub(super) size_a: Vec<(String, usize)>,
     pub(super) size_b: Vec<(String, usize)>,
     pub(super) memory_bytes: usize,
     pub(super) memory_is_estimate: bool,
 }
 
-/// Where B is in the frame of A, and how far ahead contacts are asked for.
+/// A pose of B in the frame of A, and the prediction distance.
 #[derive(Debug, Deserialize, Serialize)]
-pub(super) struct Question {
+pub(super) struct QueryRequest {
     prediction_m: f64,
     translation: [f64; 3],
     rotation: [f64; 4],
 }
 
-/// What there is at a pose.
+/// The contacts at a pose.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub(super) struct Asked {
+pub(super) struct QueryResult {
     pub(super) contacts: usize,
-    /// Of the deepest contact; `None` if there is none within the prediction.
+    /// Penetration of the deepest contact; `None` if there is none within the prediction.
     pub(super) penetration_m: Option<f64>,
     pub(super) query_ns: u64,
 }
 
-/// No query is repeated once its repetitions took this long.
+/// Total time after which a query is not repeated.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Works until there are no more questions.
+/// Answers requests until there are no more.
 pub(super) fn work(name: Name, args: &Args) -> Result<(), Error> {
-    let questions = questions();
-    let (ground, body) = setting::meshes(args)?;
-    say(&Ready)?;
+    let requests = requests();
+    let (ground, body) = problem::meshes(args)?;
+    send(&Ready)?;
     let start = Instant::now();
-    let prepared = guarded(|| algorithms::prepare(name, args, [&ground, &body]));
+    let prepared = catch_panic(|| prepare::prepare(name, args, [&ground, &body]));
     let prepare_s = start.elapsed().as_secs_f64();
-    say(&prepared.as_ref().map(|p| Made::of(p, prepare_s)))?;
+    send(&prepared.as_ref().map(|p| PreparedInfo::of(p, prepare_s)))?;
     let Ok(prepared) = prepared else {
         return Ok(());
     };
-    for line in questions {
-        let question: Question = serde_json::from_str(&line)?;
-        say(&guarded(|| ask(&prepared, &question, args.repeat)))?;
+    for line in requests {
+        let request: QueryRequest = serde_json::from_str(&line)?;
+        send(&catch_panic(|| query(&prepared, &request, args.repeat)))?;
     }
     Ok(())
 }
 
-/// The lines of standard input. Where that ends, so does this process, whatever it is at: the one that
-/// asks has ended, and nobody keeps to limits.
-fn questions() -> Receiver<String> {
+/// The lines of standard input. When it ends, this process exits at once: the supervising process
+/// has ended, and limits are no longer enforced.
+fn requests() -> Receiver<String> {
     let (sender, lines) = channel();
     std::thread::spawn(move || {
         let mut input = std::io::stdin().lock().lines().map_while(Result::ok);
@@ -79,16 +79,16 @@ fn questions() -> Receiver<String> {
     lines
 }
 
-fn say(answer: &impl Serialize) -> Result<(), Error> {
+fn send(answer: &impl Serialize) -> Result<(), Error> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}", serde_json::to_string(answer)?)?;
     Ok(out.flush()?)
 }
 
-/// Asks once to warm up, unless that takes long enough by itself, and then for the time: every time
-/// anew, without contacts of a step before, as the pose of a body is new in every step.
-fn ask(prepared: &Prepared, question: &Question, repeat: u32) -> Result<Asked, String> {
-    let (pose, prediction) = (question.pose(), question.prediction_m as f32);
+/// Queries once to warm up, unless that takes long enough by itself, and then to take the time.
+/// Every query starts without earlier contacts, as the pose of a body is new in every step.
+fn query(prepared: &Prepared, request: &QueryRequest, repeat: u32) -> Result<QueryResult, String> {
+    let (pose, prediction) = (request.pose(), request.prediction_m as f32);
     let begin = Instant::now();
     let mut least: Option<Duration> = None;
     let mut summary = (0, None);
@@ -111,14 +111,14 @@ fn ask(prepared: &Prepared, question: &Question, repeat: u32) -> Result<Asked, S
     if let Some(p) = penetration.filter(|p| !p.is_finite()) {
         return Err(format!("the penetration is {p}"));
     }
-    Ok(Asked {
+    Ok(QueryResult {
         contacts,
         penetration_m: penetration.map(f64::from),
         query_ns: least.unwrap_or_default().as_nanos() as u64,
     })
 }
 
-impl Made {
+impl PreparedInfo {
     fn of(prepared: &Prepared, prepare_s: f64) -> Self {
         let memory = prepared.memory();
         let named = |size: &vps_compare::Size| {
@@ -135,7 +135,7 @@ impl Made {
     }
 }
 
-impl Question {
+impl QueryRequest {
     pub(super) fn of(pose: &Pose, prediction_m: f64) -> Self {
         Self {
             prediction_m,

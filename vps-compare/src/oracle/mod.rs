@@ -1,9 +1,12 @@
-//! How deep a body really is.
+//! Exact penetrations to compare algorithms with.
 
-mod balls;
+mod ball_tree;
+mod depth_search;
+mod indexed_solid;
 mod plane;
-mod solids;
-mod triangles;
+mod solid;
+mod surface_distance;
+mod triangle_distance;
 
 pub use plane::PlaneOracle;
-pub use solids::{Exact, SolidOracle};
+pub use solid::{Exact, SolidOracle};

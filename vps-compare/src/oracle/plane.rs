@@ -2,10 +2,10 @@ use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::transformation::try_convex_hull;
 use vps_build::Mesh;
 
-use crate::{PrepareError, single};
+use crate::algorithm::PrepareError;
+use crate::precision::single;
 
-/// Exact depth of a mesh below a plane: of the corners of its convex hull one is always the
-/// lowest.
+/// Exact depth of a mesh below a plane: the lowest point is always a vertex of the convex hull.
 #[derive(Clone, Debug)]
 pub struct PlaneOracle {
     hull: Vec<Vector>,

@@ -1,4 +1,4 @@
-//! Voxelmaps at points whose penetration is known.
+//! Voxelmaps at points of known penetration.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -8,12 +8,12 @@ use vps_core::{DistanceField, PointSphereTree, Pose3, Query, Vec3, Weight};
 
 use super::shape::{SIZE, Shape};
 use super::{AccuracyRow, Method, Settings, angle_deg, random_rotation, wrench_errors};
-use crate::lab::Lab;
+use crate::harness::context::Context;
 
-/// Half of the edge of the cube whose shell feels force and torque, in metres.
+/// Half of the edge of the probe, a cube whose shell feels force and torque, in metres.
 const HALF_PROBE: f64 = 0.04;
 
-/// So many points that the shell adds nothing to compare: it is the same in all fields.
+/// Enough points for the error of the shell to be negligible; it is the same in all fields.
 const PROBE_POINTS: u32 = 10_000;
 
 impl Settings {
@@ -21,7 +21,7 @@ impl Settings {
         &self,
         shape: Shape,
         method: Method,
-        lab: &Lab,
+        context: &Context,
     ) -> Result<Vec<AccuracyRow>, String> {
         let mesh = shape.mesh()?;
         let probe = Mesh::cuboid([2.0 * HALF_PROBE; 3]).map_err(|e| e.to_string())?;
@@ -30,8 +30,8 @@ impl Settings {
             ..BuildOptions::default()
         };
         let built = |mesh: &Mesh, options: &BuildOptions| {
-            let kept = lab.assets.get(mesh, options, &|_| ());
-            kept.map(|kept| kept.asset).map_err(|e| e.to_string())
+            let cached = context.assets.get(mesh, options, &|_| ());
+            cached.map(|cached| cached.asset).map_err(|e| e.to_string())
         };
         let probe = built(&probe, &probe_options)?;
         let mut rows = Vec::new();
@@ -40,7 +40,7 @@ impl Settings {
                 resolution: Resolution::VoxelSize(size),
                 encoding: method.encoding(),
                 density: method.density(),
-                // It is never the shell.
+                // The shape is never the shell.
                 points: PointCount::About(100),
                 ..BuildOptions::default()
             };
@@ -60,10 +60,10 @@ impl Settings {
     fn values(&self, shape: Shape, field: &dyn DistanceField, rows: &mut Vec<AccuracyRow>) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         for sample in 0..self.samples {
-            // What a 32-bit number can hold.
+            // Rounded to 32 bits, as the field receives it.
             let point = self.point_near(shape, &mut rng).as_vec3();
             let inward = shape.inward(point.as_dvec3());
-            // The inward normal of a shell that touches here: it looks the other way.
+            // The inward normal of a shell that touches here is opposite.
             let reported = field.penetration(point, -inward.as_vec3());
             let direction = field.inward_direction(point).as_dvec3();
             let exact = shape.penetration(point.as_dvec3());
@@ -100,7 +100,7 @@ impl Settings {
         let exact_field = shape.field();
         for sample in 0..self.poses {
             let at = self.point_near(shape, &mut rng);
-            // Its faces are closer to its middle than its edges, so that it always overlaps.
+            // The faces of the cube are closest to its centre, so that it always overlaps.
             let middle = at - shape.inward(at) * (HALF_PROBE - self.depth_m);
             let rotation = random_rotation(&mut rng).as_quat();
             let pose = Pose3::from_parts(middle.as_vec3(), rotation);

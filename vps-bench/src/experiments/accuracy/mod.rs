@@ -1,13 +1,13 @@
-//! How far off penetration, direction, force and torque are, on solids where they are known.
+//! Errors of penetration, direction, force and torque on solids for which they are known.
 //!
-//! The two halves of an asset are looked at apart from each other: voxelmaps at points whose
-//! penetration is known, and pointshells in a half-space, which is exact.
+//! The two halves of an asset are measured separately: voxelmaps at points of known penetration,
+//! and pointshells in an exact half-space.
 
 mod field;
+mod present;
 mod pressure;
 mod shape;
 mod shell;
-mod show;
 mod summary;
 
 use std::path::Path;
@@ -20,34 +20,36 @@ use vps_build::{Density, Encoding};
 use vps_core::{DistanceField, Voxelmap, Wrench};
 
 use self::shape::Shape;
-use super::{Error, Experiment, Measured};
-use crate::algorithms::Algorithms;
-use crate::claims::Tables;
-use crate::config::positive;
-use crate::job::Job;
-use crate::lab::{Lab, Preparation};
-use crate::page::Block;
+use crate::config::algorithms::Algorithms;
+use crate::config::validate::positive;
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::harness::prepare::Preparation;
+use crate::report::document::Block;
 
-/// What is measured.
+/// Shapes, voxelmaps and pointshells that are measured.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     shapes: Vec<Shape>,
-    /// Ways to store and sample a voxelmap.
+    /// Methods to store and sample a voxelmap.
     methods: Vec<Method>,
     voxel_sizes_m: Vec<f64>,
-    /// Points a voxelmap is asked about, and how far from the surface they may be.
+    /// Points at which a voxelmap is sampled, and their largest distance from the surface.
     samples: u32,
     band_m: f64,
-    /// Of pointshells.
+    /// Points of pointshells.
     points: Vec<u32>,
-    /// Poses at which force and torque are compared, and how deep a shell is in the half-space.
+    /// Poses at which force and torque are compared, and the depth of a shell in the half-space.
     poses: u32,
     depth_m: f64,
     seed: u64,
 }
 
-/// What is stored in the voxels, and how it is sampled.
+/// Encoding and sampling of a voxelmap.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Method {
@@ -65,7 +67,7 @@ enum Method {
     Layers,
 }
 
-/// One comparison. What does not belong to it is empty.
+/// One comparison; columns that do not apply are empty.
 #[derive(Clone, Debug, Default, Serialize)]
 struct AccuracyRow {
     voxel_size_m: Option<f64>,
@@ -73,13 +75,13 @@ struct AccuracyRow {
     sample: u32,
     /// Reported minus exact penetration.
     error_m: Option<f64>,
-    /// What the field itself says it is off at most.
+    /// The error bound the field states.
     error_bound_m: Option<f64>,
-    /// Between the reported and the exact direction.
+    /// Angle between the reported and the exact direction.
     direction_deg: Option<f64>,
-    /// Length of the difference, as a part of the exact force.
+    /// Length of the difference of forces, relative to the exact force.
     force_error: Option<f64>,
-    /// The same of the torque, as a part of the exact force at half the width of the body.
+    /// Length of the difference of torques, relative to the exact force times half the width.
     torque_error: Option<f64>,
 }
 
@@ -136,14 +138,14 @@ impl Method {
     }
 }
 
-/// The angle between two directions in degrees; `None` if one is no direction.
+/// The angle between two directions in degrees; `None` if one of them is zero.
 fn angle_deg(a: DVec3, b: DVec3) -> Option<f64> {
     let (a, b) = (a.try_normalize()?, b.try_normalize()?);
-    // More exact than the cosine for small angles.
+    // More accurate than the cosine for small angles.
     Some(2.0 * (a - b).length().atan2((a + b).length()).to_degrees())
 }
 
-/// The errors of force and torque, as parts of the exact force; `None` if that is zero.
+/// Errors of force and torque relative to the exact force; `None` if that is zero.
 fn wrench_errors(wrench: &Wrench, exact: (DVec3, DVec3), half_width: f64) -> Option<(f64, f64)> {
     let size = exact.0.length();
     let force = wrench.force.as_dvec3().distance(exact.0) / size;
@@ -151,7 +153,7 @@ fn wrench_errors(wrench: &Wrench, exact: (DVec3, DVec3), half_width: f64) -> Opt
     (size > 0.0).then_some((force, torque))
 }
 
-/// Uniformly distributed (Shoemake, 1992).
+/// A uniformly distributed rotation (Shoemake, 1992).
 fn random_rotation(rng: &mut impl Rng) -> DQuat {
     let [u, v, w]: [f64; 3] = rng.random();
     let (v, w) = (v * std::f64::consts::TAU, w * std::f64::consts::TAU);
@@ -201,19 +203,19 @@ impl Experiment for Settings {
         Ok(serde_json::to_string(&of_jobs)?)
     }
 
-    fn identity(&self, _lab: &Lab) -> Result<String, String> {
+    fn identity(&self, _context: &Context) -> Result<String, String> {
         Ok(String::new())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let shape = self.shapes.iter().find(|s| s.name() == job.case);
         let shape = *shape.ok_or_else(|| format!("no shape `{}`", job.case))?;
         let method = Method::ALL.into_iter().find(|m| m.name() == job.algorithm);
         let rows = match method {
-            Some(method) => self.fields(shape, method, lab)?,
-            None => self.shells(shape, lab)?,
+            Some(method) => self.fields(shape, method, context)?,
+            None => self.shells(shape, context)?,
         };
-        Measured::of(&rows, &Preparation::default())
+        Measurement::of(&rows, &Preparation::default())
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -226,7 +228,7 @@ impl Experiment for Settings {
         _algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, folder)
+        present::present(self, tables, folder)
     }
 }
 

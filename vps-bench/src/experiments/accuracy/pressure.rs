@@ -1,25 +1,25 @@
-//! Force and torque on a surface of which every place counts, as on infinitely many points.
+//! Force and torque integrated over a surface, the limit of infinitely many points.
 
 use rapier3d::glamx::{DPose3, DVec3};
 use vps_build::Mesh;
 
-/// Small pieces of a surface.
-pub(super) struct Pieces(Vec<Piece>);
+/// A surface cut into small pieces.
+pub(super) struct SurfacePieces(Vec<Piece>);
 
 struct Piece {
     middle: DVec3,
-    /// The inward normal, as long as the piece is large, in m².
+    /// The inward normal times the area of the piece, in m².
     inward: DVec3,
 }
 
-/// How many pieces there are at least.
-const PIECES: usize = 150_000;
+/// Least number of pieces.
+const MIN_PIECES: usize = 150_000;
 
-impl Pieces {
-    /// Those of a mesh, whose triangles are cut until there are many.
+impl SurfacePieces {
+    /// The pieces of a mesh, whose triangles are subdivided until there are enough.
     pub(super) fn of(mesh: &Mesh) -> Self {
         let mut fine = mesh.clone();
-        while fine.triangles().len() < PIECES {
+        while fine.triangles().len() < MIN_PIECES {
             fine = fine.subdivided();
         }
         let pieces = (0..fine.triangles().len()).map(|t| {
@@ -54,12 +54,12 @@ impl Pieces {
 mod tests {
     use super::*;
 
-    /// By the theorem of Gauss the force of a pressure that grows with depth is the volume that is
-    /// immersed, straight up.
+    /// By the divergence theorem a pressure that grows with depth exerts a force of the immersed
+    /// volume, straight up.
     #[test]
     fn the_force_is_the_immersed_volume() {
         let (radius, depth) = (0.1, 0.03);
-        let ball = Pieces::of(&Mesh::icosphere(radius, 6).unwrap());
+        let ball = SurfacePieces::of(&Mesh::icosphere(radius, 6).unwrap());
         let pose = DPose3::translation(0.0, radius - depth, 0.0);
         let (force, torque) = ball.wrench(&pose);
         let cap = std::f64::consts::PI * depth * depth * (radius - depth / 3.0);

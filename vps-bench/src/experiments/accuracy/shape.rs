@@ -1,4 +1,4 @@
-//! Solids whose penetration is known exactly.
+//! Solids of exactly known penetration.
 
 use rapier3d::glamx::{DQuat, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -9,11 +9,11 @@ use vps_core::{Aabb, DistanceField, FieldFn, Vec3};
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Shape {
-    /// Bent the same way everywhere.
+    /// Constant curvature.
     Ball,
-    /// Flat with sharp edges, askew to the grid of its voxels.
+    /// Flat with sharp edges, rotated against the voxel grid.
     Cuboid,
-    /// Bent outwards and, around its hole, inwards.
+    /// Convex outside and saddle-shaped around its hole.
     Torus,
 }
 
@@ -32,13 +32,17 @@ impl Shape {
         }
     }
 
-    /// The solid as triangles, whose corners are on its surface and which are no further from it
-    /// than 5 micrometres.
+    /// The solid as a mesh whose vertices are on the surface and whose triangles are within 5 µm of
+    /// it.
     pub(super) fn mesh(self) -> Result<Mesh, String> {
         let mesh = match self {
             Self::Ball => Mesh::icosphere(SIZE, 7),
             Self::Cuboid => Mesh::cuboid((2.0 * HALF_EXTENTS).to_array()).and_then(|mesh| {
-                let turned: Vec<_> = mesh.vertices().iter().map(|v| turn() * *v).collect();
+                let turned: Vec<_> = mesh
+                    .vertices()
+                    .iter()
+                    .map(|v| cuboid_rotation() * *v)
+                    .collect();
                 Mesh::new(&turned, mesh.triangles())
             }),
             Self::Torus => models::torus(512).scaled(0.2),
@@ -46,19 +50,19 @@ impl Shape {
         mesh.map_err(|e| e.to_string())
     }
 
-    /// How deep a point is in metres, positive inside.
+    /// The penetration of a point in metres, positive inside.
     pub(super) fn penetration(self, point: DVec3) -> f64 {
         match self {
             Self::Ball => SIZE - point.length(),
             Self::Cuboid => {
-                let beyond = (turn().inverse() * point).abs() - HALF_EXTENTS;
+                let beyond = (cuboid_rotation().inverse() * point).abs() - HALF_EXTENTS;
                 -(beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0))
             }
             Self::Torus => TUBE - DVec2::new(point.truncate().length() - RING, point.z).length(),
         }
     }
 
-    /// The way to deeper penetration, of length one.
+    /// The direction of increasing penetration, of length one.
     pub(super) fn inward(self, point: DVec3) -> DVec3 {
         const STEP: f64 = 1e-7;
         let along = |axis: DVec3| {
@@ -67,11 +71,11 @@ impl Shape {
         DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).normalize_or_zero()
     }
 
-    /// How far the solid reaches in a direction of length one.
-    pub(super) fn reach(self, direction: DVec3) -> f64 {
+    /// The support function: the extent of the solid in a direction of length one.
+    pub(super) fn support(self, direction: DVec3) -> f64 {
         match self {
             Self::Ball => SIZE,
-            Self::Cuboid => HALF_EXTENTS.dot((turn().inverse() * direction).abs()),
+            Self::Cuboid => HALF_EXTENTS.dot((cuboid_rotation().inverse() * direction).abs()),
             Self::Torus => RING * direction.truncate().length() + TUBE,
         }
     }
@@ -87,8 +91,8 @@ impl Shape {
     }
 }
 
-/// How the cuboid is turned: its faces lie along no axis of the grid.
-fn turn() -> DQuat {
+/// The rotation of the cuboid: no face is parallel to the grid.
+fn cuboid_rotation() -> DQuat {
     DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7)
 }
 
@@ -119,13 +123,13 @@ mod tests {
     }
 
     #[test]
-    fn the_reach_is_that_of_the_corners() {
+    fn the_support_is_that_of_the_vertices() {
         for shape in ALL {
             let mesh = shape.mesh().unwrap();
             for direction in [DVec3::X, DVec3::Z, DVec3::new(-1.0, 2.0, 0.5).normalize()] {
                 let along = mesh.vertices().iter().map(|v| v.dot(direction));
                 let furthest = along.fold(f64::NEG_INFINITY, f64::max);
-                let reach = shape.reach(direction);
+                let reach = shape.support(direction);
                 assert!((reach - furthest).abs() < 2e-5, "{shape:?}: {reach}");
             }
         }

@@ -6,20 +6,24 @@ use rapier3d::glamx::{DPose3, DVec3};
 use vps_build::{BuildOptions, PointCount};
 use vps_core::{HalfSpace, Pose3, Query, Vec3, Weight};
 
-use super::pressure::Pieces;
+use super::pressure::SurfacePieces;
 use super::shape::{SIZE, Shape};
 use super::{AccuracyRow, Settings, angle_deg, random_rotation, wrench_errors};
-use crate::lab::Lab;
+use crate::harness::context::Context;
 
 impl Settings {
-    pub(super) fn shells(&self, shape: Shape, lab: &Lab) -> Result<Vec<AccuracyRow>, String> {
+    pub(super) fn shells(
+        &self,
+        shape: Shape,
+        context: &Context,
+    ) -> Result<Vec<AccuracyRow>, String> {
         let mesh = shape.mesh()?;
-        let pieces = Pieces::of(&mesh);
+        let pieces = SurfacePieces::of(&mesh);
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
-        // The same poses whatever the number of points.
+        // The same poses for all numbers of points.
         let poses = (0..self.poses).map(|_| {
             let rotation = random_rotation(&mut rng);
-            let reach = shape.reach(rotation.inverse() * DVec3::NEG_Y);
+            let reach = shape.support(rotation.inverse() * DVec3::NEG_Y);
             let pose = DPose3::from_parts(DVec3::Y * (reach - self.depth_m), rotation);
             (pose, pieces.wrench(&pose))
         });
@@ -31,12 +35,12 @@ impl Settings {
                 points: PointCount::About(count),
                 ..BuildOptions::default()
             };
-            let kept = lab.assets.get(&mesh, &options, &|_| ());
-            let asset = kept.map_err(|e| e.to_string())?.asset;
+            let cached = context.assets.get(&mesh, &options, &|_| ());
+            let asset = cached.map_err(|e| e.to_string())?.asset;
             for (sample, (pose, exact)) in (0..).zip(&poses) {
                 let single = Pose3::from_parts(pose.translation.as_vec3(), pose.rotation.as_quat());
                 let query = Query::new(&asset.tree, &ground, single);
-                // The lowest point, also if it is still above the ground.
+                // The lowest point, even if it is above the ground.
                 let lowest = query.closest().ok_or("a pose is not finite")?;
                 let normal = pose.rotation * lowest.normal.as_dvec3();
                 let wrench = query.wrench(Vec3::ZERO, Weight::Area);

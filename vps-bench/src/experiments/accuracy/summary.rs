@@ -1,4 +1,4 @@
-//! Tables of errors.
+//! Summarizes errors.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use polars::prelude::DataFrame;
 use serde::Serialize;
 
 use super::{SHELL, Settings};
-use crate::claims::Tables;
-use crate::experiments::Error;
-use crate::frame::{self, Row, rows};
-use crate::stats::{Sample, exponent};
+use crate::data::dataframe::{self, Row, rows};
+use crate::data::stats::{Sample, power_law_exponent};
+use crate::data::tables::Tables;
+use crate::error::Error;
 
 /// Errors at one size, a voxel size in mm or a number of points.
 #[derive(Serialize)]
@@ -19,7 +19,7 @@ struct ErrorRow<'s> {
     size: f64,
     /// The bias: reported minus exact penetration.
     error_mm_mean: Option<f64>,
-    /// The spread around it.
+    /// The standard deviation.
     error_mm_deviation: Option<f64>,
     error_mm_rms: Option<f64>,
     error_mm_abs_max: Option<f64>,
@@ -31,7 +31,7 @@ struct ErrorRow<'s> {
     torque_error_median: Option<f64>,
 }
 
-/// Exponents of power laws of the size.
+/// Exponents of power laws in the size.
 #[derive(Serialize)]
 struct SlopeRow<'s> {
     shape: &'s str,
@@ -44,13 +44,13 @@ struct SlopeRow<'s> {
 }
 
 /// `field` and `field_slopes`: by voxel size. `shell` and `shell_slopes`: by number of points.
-pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables, Error> {
+pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tables, Error> {
     let mut groups: BTreeMap<(String, String), BTreeMap<u64, Vec<Row<'_>>>> = BTreeMap::new();
-    for row in rows(frame) {
+    for row in rows(records) {
         let size = row.number("voxel_size_m").map(|m| m * 1e3);
         let size = size.or(row.number("points")).unwrap_or_default();
         let key = (row.text("case"), row.text("algorithm"));
-        // Bits of positive numbers have their order.
+        // The bits of positive numbers sort as the numbers do.
         let sizes = groups.entry(key).or_default();
         sizes.entry(size.to_bits()).or_default().push(row);
     }
@@ -64,7 +64,9 @@ pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables
             };
             let sizes = sizes.iter();
             let errors: Vec<_> = sizes
-                .map(|(bits, rows)| of_one(shape.name(), method, f64::from_bits(*bits), rows))
+                .map(|(bits, rows)| {
+                    summarize_group(shape.name(), method, f64::from_bits(*bits), rows)
+                })
                 .collect();
             let slopes = slopes(&errors);
             if method == SHELL {
@@ -77,14 +79,19 @@ pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables
         }
     }
     Ok(Tables::from([
-        ("field".into(), frame::of(field)?),
-        ("field_slopes".into(), frame::of(field_slopes)?),
-        ("shell".into(), frame::of(shell)?),
-        ("shell_slopes".into(), frame::of(shell_slopes)?),
+        ("field".into(), dataframe::of(field)?),
+        ("field_slopes".into(), dataframe::of(field_slopes)?),
+        ("shell".into(), dataframe::of(shell)?),
+        ("shell_slopes".into(), dataframe::of(shell_slopes)?),
     ]))
 }
 
-fn of_one<'s>(shape: &'s str, method: &'s str, size: f64, rows: &[Row<'_>]) -> ErrorRow<'s> {
+fn summarize_group<'s>(
+    shape: &'s str,
+    method: &'s str,
+    size: f64,
+    rows: &[Row<'_>],
+) -> ErrorRow<'s> {
     let column = |name: &str| Sample::of(rows.iter().filter_map(|row| row.number(name)));
     let errors = || {
         rows.iter()
@@ -98,10 +105,10 @@ fn of_one<'s>(shape: &'s str, method: &'s str, size: f64, rows: &[Row<'_>]) -> E
         method,
         size,
         error_mm_mean: signed.mean(),
-        error_mm_deviation: signed.deviation(),
+        error_mm_deviation: signed.standard_deviation(),
         error_mm_rms: signed.root_mean_square(),
-        error_mm_abs_max: absolute.most(),
-        error_bound_mm: column("error_bound_m").most().map(|m| m * 1e3),
+        error_mm_abs_max: absolute.max(),
+        error_bound_mm: column("error_bound_m").max().map(|m| m * 1e3),
         direction_deg_median: direction.median(),
         direction_deg_p95: direction.quantile(0.95),
         force_error_median: force.median(),
@@ -112,7 +119,7 @@ fn of_one<'s>(shape: &'s str, method: &'s str, size: f64, rows: &[Row<'_>]) -> E
 
 fn slopes<'s>(errors: &[ErrorRow<'s>]) -> Option<SlopeRow<'s>> {
     let slope = |value: fn(&ErrorRow<'_>) -> Option<f64>| {
-        exponent(
+        power_law_exponent(
             errors
                 .iter()
                 .filter_map(|e| Some((e.size, value(e)?.abs()))),

@@ -1,30 +1,30 @@
-//! The bouncing ball without steps: parabolas, each lower than the one before.
+//! The exact motion of a bouncing ball: parabolas of decreasing height.
 
-/// A ball above a ground it cannot enter.
+/// A ball above a rigid ground.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExactBounce {
     pub(super) radius_m: f64,
-    /// Of the centre at the start, at rest.
+    /// Height of the centre at the start, at rest.
     pub(super) drop_height_m: f64,
     pub(super) gravity_m_s2: f64,
     /// Speed after an impact over that before it.
     pub(super) restitution: f64,
 }
 
-/// From this speed on the ball lies on the ground, in m/s: bounces lower than 1e-13 m.
-const RESTS_M_S: f64 = 1e-6;
+/// Below this speed the ball rests on the ground, in m/s: bounces are lower than 1e-13 m.
+const RESTING_M_S: f64 = 1e-6;
 
 impl ExactBounce {
     fn fall_m(&self) -> f64 {
         self.drop_height_m - self.radius_m
     }
 
-    /// Height of the centre at its highest after the first impact.
+    /// Largest height of the centre after the first impact.
     pub(super) fn first_apex_m(&self) -> f64 {
         self.radius_m + self.restitution * self.restitution * self.fall_m()
     }
 
-    /// When it touches the ground for the first time.
+    /// Time of the first impact.
     pub(super) fn first_impact_s(&self) -> f64 {
         (2.0 * self.fall_m() / self.gravity_m_s2).sqrt()
     }
@@ -37,7 +37,7 @@ impl ExactBounce {
             return self.drop_height_m - 0.5 * g * time_s * time_s;
         }
         let mut speed = self.restitution * (2.0 * g * self.fall_m()).sqrt();
-        while speed > RESTS_M_S {
+        while speed > RESTING_M_S {
             let flight = 2.0 * speed / g;
             if since < flight {
                 return self.radius_m + since * (speed - 0.5 * g * since);
@@ -62,7 +62,7 @@ mod tests {
         }
     }
 
-    /// Against a fine integration of the motion that knows nothing of parabolas.
+    /// Compared with a fine numerical integration of the motion.
     #[test]
     fn it_moves_as_an_integration_says() {
         for restitution in [0.1, 0.5, 0.9] {

@@ -1,7 +1,7 @@
 //! A ball is dropped and bounces (section 4.1).
 
 mod exact;
-mod show;
+mod present;
 mod simulate;
 mod summary;
 
@@ -10,15 +10,14 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-pub(super) use simulate::ball_inertia;
-
-use super::{Error, Experiment, Measured};
-use crate::algorithms::Algorithms;
-use crate::claims::Tables;
-use crate::config::{not_negative, positive};
-use crate::job::Job;
-use crate::lab::Lab;
-use crate::page::Block;
+use crate::config::algorithms::Algorithms;
+use crate::config::validate::{not_negative, positive};
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::report::document::Block;
 use exact::ExactBounce;
 
 /// The ball, and how it is dropped.
@@ -26,22 +25,22 @@ use exact::ExactBounce;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     radius_m: f64,
-    /// The mesh VPS samples is an icosahedron divided so many times.
+    /// Subdivisions of the icosahedron whose mesh VPS samples.
     subdivisions: u32,
     mass_kg: f64,
     friction: f64,
-    /// A box.
+    /// Edge lengths of the box.
     ground_extents_m: [f64; 3],
     gravity_m_s2: f64,
-    /// Of the centre above the ground.
+    /// Height of the centre above the ground.
     drop_height_m: f64,
     frequency_hz: u32,
     duration_s: f64,
-    /// Cases, each with each.
+    /// Every combination with a prediction distance is a case.
     restitutions: Vec<f64>,
-    /// How far ahead contacts are found; the first is drawn.
+    /// Prediction distances of contacts; the first is drawn.
     predictions_m: Vec<f64>,
-    /// Random start orientations, and how many of them in a quick run; the first is drawn.
+    /// Number of random start orientations, and in a quick run; the first is drawn.
     orientations: u32,
     quick_orientations: u32,
     seed: u64,
@@ -59,7 +58,7 @@ struct PaperValue {
     penetration_mm: f64,
 }
 
-/// What differs from case to case.
+/// The parameters of a case.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     restitution: f64,
@@ -74,7 +73,7 @@ impl Case {
 }
 
 impl Settings {
-    /// Those that are drawn come first.
+    /// All cases; those that are drawn come first.
     fn cases(&self) -> impl Iterator<Item = Case> {
         self.predictions_m.iter().flat_map(|&prediction_m| {
             self.restitutions.iter().map(move |&restitution| Case {
@@ -181,16 +180,16 @@ impl Experiment for Settings {
         Ok(serde_json::to_string(&of_jobs)?)
     }
 
-    fn identity(&self, _: &Lab) -> Result<String, String> {
+    fn identity(&self, _: &Context) -> Result<String, String> {
         Ok(String::new())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let ball = (self.radius_m, self.subdivisions);
-        let ready = lab.ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
+        let ready = context.prepare_ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
         let rows = self.simulate(prepared, self.case(&job.case)?, job.seed)?;
-        Measured::of(&rows, &ready.preparation)
+        Measurement::of(&rows, &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -203,6 +202,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms, folder)
+        present::present(self, tables, algorithms, folder)
     }
 }

@@ -5,47 +5,48 @@ use serde::Serialize;
 use vps_compare::Prepared;
 
 use super::{Case, Settings};
-use crate::experiments::orientation::random_orientation;
-use crate::experiments::world::Stepping;
+use crate::experiments::shared::inertia::ball_inertia;
+use crate::experiments::shared::orientation::random_orientation;
+use crate::experiments::shared::world::StepSettings;
 
 /// One step of one simulation.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct StepRow {
     step: u32,
     time_s: f64,
-    /// Of the centre, at the pose that was asked about.
+    /// Height of the centre at the queried pose.
     height_m: f32,
-    /// How far the centre is from where it would be, sideways.
+    /// Sideways distance of the centre from the exact one.
     aside_m: f32,
-    /// Contact points given to the engine.
+    /// Number of contact points given to the engine.
     contacts: usize,
-    /// The deepest of them, negative if none touches yet.
+    /// Deepest penetration, negative if nothing touches yet.
     penetration_m: Option<f32>,
-    /// Exact for a ball: the radius without the height of the centre.
+    /// Exact penetration of a ball: its radius minus the height of the centre.
     true_penetration_m: f32,
-    /// After the step, upwards.
+    /// Upward velocity after the step.
     velocity_m_s: f32,
 }
 
 impl Settings {
-    /// Simulates one start orientation; a row a step, as long as the centre is above the ground's
-    /// upper side.
+    /// Simulates one start orientation; a row for each step, as long as the centre is above the
+    /// upper side of the ground.
     ///
     /// # Errors
-    /// When the engine could not ask the algorithm, or the ball leaves all bounds.
+    /// When the algorithm does not support the pair of shapes, or the ball leaves the world.
     pub(super) fn simulate(
         &self,
         prepared: &Prepared,
         case: Case,
         orientation: u32,
     ) -> Result<Vec<StepRow>, String> {
-        let stepping = Stepping {
+        let step_settings = StepSettings {
             gravity_m_s2: self.gravity_m_s2,
             frequency_hz: self.frequency_hz,
             prediction_m: case.prediction_m,
         };
-        let mut world = stepping.world(&prepared.dispatcher);
-        // Both have the same coefficients: the pair's, the average of the two, is that as well.
+        let mut world = step_settings.new_world(&prepared.dispatcher);
+        // Both have the same coefficients, and so has the pair, whose are the averages.
         let material = |shape: &SharedShape| {
             ColliderBuilder::new(shape.clone())
                 .friction(self.friction as f32)
@@ -87,9 +88,4 @@ impl Settings {
         }
         Ok(rows)
     }
-}
-
-/// Of a solid ball about its centre.
-pub(in crate::experiments) fn ball_inertia(mass_kg: f64, radius_m: f64) -> Matrix {
-    Matrix::from_diagonal(Vector::splat((0.4 * mass_kg * radius_m * radius_m) as f32))
 }

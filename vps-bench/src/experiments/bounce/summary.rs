@@ -1,25 +1,25 @@
-//! Tables of what balls did.
+//! Summarizes bounces.
 
 use polars::prelude::*;
 
 use super::{Case, Settings};
-use crate::claims::Tables;
-use crate::experiments::Error;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// `summary`: a row a case and algorithm, over all start orientations. `course`: heights over time
-/// of the first orientation in the cases that are drawn.
+/// `summary`: a row for each case and algorithm, over all start orientations. `course`: heights
+/// over time of the first orientation in the cases that are drawn.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let mut parts = Vec::new();
     for case in settings.cases() {
         for algorithm in &settings.algorithms {
-            let of_both = rows.clone().lazy().filter(
+            let group = rows.clone().lazy().filter(
                 col("case")
                     .eq(lit(case.name()))
                     .and(col("algorithm").eq(lit(algorithm.as_str()))),
             );
-            let of_both = of_both.collect()?;
-            if of_both.height() > 0 {
-                parts.push(of_one(settings, case, algorithm, of_both)?.lazy());
+            let group = group.collect()?;
+            if group.height() > 0 {
+                parts.push(summarize_group(settings, case, algorithm, group)?.lazy());
             }
         }
     }
@@ -43,8 +43,8 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
     ]))
 }
 
-/// What one algorithm did in one case.
-fn of_one(
+/// The summary of one algorithm in one case.
+fn summarize_group(
     settings: &Settings,
     case: Case,
     algorithm: &str,

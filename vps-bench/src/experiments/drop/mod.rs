@@ -1,6 +1,6 @@
-//! A body falls on the ground, simulated once for each algorithm.
+//! A body falls on the ground, simulated by each algorithm.
 
-mod show;
+mod present;
 mod simulate;
 mod summary;
 
@@ -12,72 +12,74 @@ use rapier3d::math::Pose;
 use serde::{Deserialize, Serialize};
 
 use self::simulate::StepRow;
-use super::{Error, Experiment, Measured};
-use crate::algorithms::Algorithms;
-use crate::claims::Tables;
-use crate::config::{not_negative, positive};
-use crate::job::Job;
-use crate::lab::{Body, Lab, Ready};
-use crate::page::Block;
+use crate::config::algorithms::Algorithms;
+use crate::config::validate::{not_negative, positive};
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::{Body, Context};
+use crate::harness::job::Job;
+use crate::harness::prepare::PreparedAlgorithm;
+use crate::report::document::Block;
 
-/// What falls, and how.
+/// The falling body, the ground, and the start.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     /// A name in `models.toml` or the path of a mesh.
-    pub(crate) model: String,
-    /// Metres a unit of the model is long.
-    pub(crate) scale: f64,
+    model: String,
+    /// Length of a unit of the model in metres.
+    scale: f64,
     mass_kg: f32,
     friction: f32,
     restitution: f32,
-    /// A box.
+    /// Edge lengths of the box.
     pub(super) ground_extents_m: [f64; 3],
     gravity_m_s2: f32,
-    /// Of the centre of mass above the ground.
+    /// Height of the centre of mass above the ground.
     drop_height_m: f32,
-    /// How far ahead contacts are found, for all algorithms.
+    /// Prediction distance of contacts, for all algorithms.
     pub(super) prediction_m: f32,
     duration_s: f64,
-    /// What counts, from and to.
+    /// The measured interval, from and to.
     measured_s: [f64; 2],
-    /// A case each.
+    /// One case for each.
     pub(super) frequencies_hz: Vec<u32>,
-    /// Random start orientations, and how many of them in a quick run.
+    /// Number of random start orientations, and in a quick run.
     orientations: u32,
     quick_orientations: u32,
     seed: u64,
     pub(super) algorithms: Vec<String>,
-    /// What ratios refer to.
+    /// The algorithm that ratios refer to.
     reference: Option<String>,
     show: Vec<Show>,
     #[serde(default)]
     paper_value: Vec<PaperValue>,
 }
 
-/// What tables and figures show.
+/// A group of tables and figures in the report.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Show {
-    /// Times of queries, a row an algorithm, with the curves.
+    /// Times of queries: a row for each algorithm, and curves over steps.
     QueryTimes,
     /// Linear velocity over steps.
     LinearVelocity,
     /// Kinetic energy over steps.
     KineticEnergy,
-    /// How evenly it rolls.
+    /// How evenly the body rolls.
     Spin,
     /// Whether the body is held, by frequency.
     Frequencies,
 }
 
-/// A mean time of a query the paper prints.
+/// The mean time of a query as printed in the paper.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct PaperValue {
     algorithm: String,
     query_us: f64,
-    /// Where it stands.
+    /// Its place in the paper.
     source: String,
 }
 
@@ -86,7 +88,7 @@ impl Settings {
         format!("{frequency}hz")
     }
 
-    /// How many start orientations there are.
+    /// The number of start orientations.
     pub(super) fn seeds(&self, quick: bool) -> u32 {
         if quick {
             self.quick_orientations
@@ -100,26 +102,20 @@ impl Settings {
         (self.duration_s * f64::from(frequency)).round() as u32
     }
 
-    /// The first step that counts and the one after the last.
+    /// The first measured step and the one after the last.
     fn measured_steps(&self, frequency: u32) -> [u32; 2] {
         self.measured_s
             .map(|s| (s * f64::from(frequency)).round() as u32)
     }
 
-    /// Another body than the file says.
-    pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
-        self.model = model.into();
-        self.scale = scale.unwrap_or(self.scale);
-    }
-
-    /// The body, and an algorithm made ready for it and the ground.
-    pub(super) fn ready(
+    /// The body, and an algorithm prepared for it and the ground.
+    pub(super) fn prepare(
         &self,
-        lab: &Lab,
+        context: &Context,
         algorithm: &str,
-    ) -> Result<(Rc<Body>, Rc<Ready>), String> {
-        let body = lab.body(&self.model, self.scale)?;
-        let ready = lab.on_box(algorithm, &body, self.ground_extents_m)?;
+    ) -> Result<(Rc<Body>, Rc<PreparedAlgorithm>), String> {
+        let body = context.body(&self.model, self.scale)?;
+        let ready = context.prepare_on_box(algorithm, &body, self.ground_extents_m)?;
         Ok((body, ready))
     }
 
@@ -128,10 +124,10 @@ impl Settings {
         1.0 / f64::from(self.frequencies_hz[0])
     }
 
-    /// The poses the first algorithm is asked about at the first frequency: one a step, the upper
-    /// side of the ground being at height 0.
-    pub(super) fn trace(&self, lab: &Lab, seed: u32) -> Result<Vec<Pose>, String> {
-        let (body, ready) = self.ready(lab, &self.algorithms[0])?;
+    /// The poses of the queries of the first algorithm at the first frequency, one for each step.
+    /// The upper side of the ground is at height 0.
+    pub(super) fn trace(&self, context: &Context, seed: u32) -> Result<Vec<Pose>, String> {
+        let (body, ready) = self.prepare(context, &self.algorithms[0])?;
         let prepared = ready.prepared()?;
         let steps = self.simulate(&body, prepared, self.frequencies_hz[0], seed)?;
         Ok(steps.iter().map(StepRow::pose).collect())
@@ -184,6 +180,16 @@ impl Experiment for Settings {
         Ok(())
     }
 
+    fn replace_model(&mut self, model: &str, scale: Option<f64>) -> bool {
+        self.model = model.into();
+        self.scale = scale.unwrap_or(self.scale);
+        true
+    }
+
+    fn model(&self) -> Option<(&str, f64)> {
+        Some((self.model.as_str(), self.scale))
+    }
+
     fn algorithms(&self) -> Vec<&str> {
         self.algorithms.iter().map(String::as_str).collect()
     }
@@ -214,12 +220,12 @@ impl Experiment for Settings {
         Ok(serde_json::to_string(&of_jobs)?)
     }
 
-    fn identity(&self, lab: &Lab) -> Result<String, String> {
-        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    fn identity(&self, context: &Context) -> Result<String, String> {
+        Ok(context.body(&self.model, self.scale)?.identity.clone())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        let (body, ready) = self.ready(lab, &job.algorithm)?;
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
+        let (body, ready) = self.prepare(context, &job.algorithm)?;
         let prepared = ready.prepared()?;
         let frequency = self
             .frequencies_hz
@@ -227,7 +233,7 @@ impl Experiment for Settings {
             .find(|f| Self::case(**f) == job.case);
         let frequency = *frequency.ok_or_else(|| format!("no case `{}`", job.case))?;
         let rows = self.simulate(&body, prepared, frequency, job.seed)?;
-        Measured::of(&rows, &ready.preparation)
+        Measurement::of(&rows, &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -240,6 +246,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms, folder)
+        present::present(self, tables, algorithms, folder)
     }
 }

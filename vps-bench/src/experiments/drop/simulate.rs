@@ -6,35 +6,35 @@ use vps_compare::Prepared;
 use vps_core::Quat;
 
 use super::Settings;
-use crate::experiments::orientation::random_orientation;
-use crate::experiments::world::{Stepping, World};
-use crate::lab::Body;
+use crate::experiments::shared::orientation::random_orientation;
+use crate::experiments::shared::world::{StepSettings, World};
+use crate::harness::context::Body;
 
 /// One step of one simulation.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct StepRow {
     step: u32,
     time_s: f64,
-    /// Collision queries of this step; 0 while the boxes of the bodies are apart.
+    /// Number of collision queries of this step; 0 while the bounding boxes are apart.
     queries: u64,
-    /// Time they took.
+    /// Total time of the queries.
     query_ns: u64,
-    /// Contact points given to the engine.
+    /// Number of contact points given to the engine.
     contacts: usize,
-    /// The deepest of them, negative if none touches yet.
+    /// Deepest penetration, negative if nothing touches yet.
     penetration_m: Option<f32>,
-    /// How deep the mesh really is at the pose that was asked about.
+    /// Exact penetration of the mesh at the queried pose.
     true_penetration_m: f32,
-    /// Of the centre of mass, after the step.
+    /// Velocity of the centre of mass after the step.
     linear_velocity_m_s: f32,
     angular_velocity_rad_s: f32,
     angular_velocity_x_rad_s: f32,
     angular_velocity_y_rad_s: f32,
     angular_velocity_z_rad_s: f32,
-    /// By how much the angular velocity changed in the step.
+    /// Change of the angular velocity in the step.
     spin_change_rad_s: f32,
     kinetic_energy_j: f32,
-    /// Pose that was asked about.
+    /// The queried pose.
     x_m: f32,
     y_m: f32,
     z_m: f32,
@@ -45,7 +45,7 @@ pub(super) struct StepRow {
 }
 
 impl StepRow {
-    /// The pose that was asked about.
+    /// The queried pose.
     pub(super) fn pose(&self) -> Pose {
         let rotation = Quat::from_xyzw(self.qx, self.qy, self.qz, self.qw);
         Pose::from_parts(Vector::new(self.x_m, self.y_m, self.z_m), rotation)
@@ -53,10 +53,10 @@ impl StepRow {
 }
 
 impl Settings {
-    /// Simulates one start orientation with one algorithm; a row a step.
+    /// Simulates one start orientation with one algorithm; a row for each step.
     ///
     /// # Errors
-    /// When the engine could not ask the algorithm: it would have gone on without contacts.
+    /// When the algorithm does not support the pair of shapes.
     pub(super) fn simulate(
         &self,
         falling: &Body,
@@ -68,16 +68,16 @@ impl Settings {
         let steps = self.steps(frequency);
         let mut rows = Vec::with_capacity(steps as usize);
         for step in 0..steps {
-            let asked = *world.physics.bodies[body].position();
+            let queried = *world.physics.bodies[body].position();
             let spin = world.physics.bodies[body].angvel();
             let queries = world.step()?;
             let (contacts, penetration_m) = world.contacts();
             let body = &world.physics.bodies[body];
-            let turns = body.angvel();
+            let new_spin = body.angvel();
             if !body.position().is_finite() {
                 return Err(format!("the body left all bounds in step {step}"));
             }
-            let (t, q) = (asked.translation, asked.rotation);
+            let (t, q) = (queried.translation, queried.rotation);
             rows.push(StepRow {
                 step,
                 time_s: f64::from(step) / f64::from(frequency),
@@ -85,13 +85,13 @@ impl Settings {
                 query_ns: queries.ns,
                 contacts,
                 penetration_m,
-                true_penetration_m: falling.oracle.penetration(&asked, 0.0),
+                true_penetration_m: falling.oracle.penetration(&queried, 0.0),
                 linear_velocity_m_s: body.linvel().length(),
-                angular_velocity_rad_s: turns.length(),
-                angular_velocity_x_rad_s: turns.x,
-                angular_velocity_y_rad_s: turns.y,
-                angular_velocity_z_rad_s: turns.z,
-                spin_change_rad_s: (turns - spin).length(),
+                angular_velocity_rad_s: new_spin.length(),
+                angular_velocity_x_rad_s: new_spin.x,
+                angular_velocity_y_rad_s: new_spin.y,
+                angular_velocity_z_rad_s: new_spin.z,
+                spin_change_rad_s: (new_spin - spin).length(),
                 kinetic_energy_j: body.kinetic_energy(),
                 x_m: t.x,
                 y_m: t.y,
@@ -113,12 +113,12 @@ impl Settings {
         frequency: u32,
         orientation: u32,
     ) -> (World, RigidBodyHandle) {
-        let stepping = Stepping {
+        let step_settings = StepSettings {
             gravity_m_s2: self.gravity_m_s2.into(),
             frequency_hz: frequency,
             prediction_m: self.prediction_m.into(),
         };
-        let mut world = stepping.world(&prepared.dispatcher);
+        let mut world = step_settings.new_world(&prepared.dispatcher);
         let material = |shape: &SharedShape| {
             ColliderBuilder::new(shape.clone())
                 .friction(self.friction)

@@ -1,4 +1,4 @@
-//! Tables of what bodies did.
+//! Summarizes falls.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,14 @@ use polars::prelude::*;
 use serde::Serialize;
 
 use super::{Settings, Show};
-use crate::claims::Tables;
-use crate::experiments::Error;
-use crate::frame::{self, rows};
-use crate::stats::power_spectrum;
+use crate::data::dataframe::{self, rows};
+use crate::data::stats::power_spectrum;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// `summary`: a row a case and algorithm. `course`: the medians over all orientations, a row a step.
-/// If it is shown how bodies turn in the steps that count: `spectrum`, a row a frequency, and
-/// `turning`, a row a case and algorithm.
+/// `summary`: a row for each case and algorithm. `course`: the medians over all orientations, a row
+/// for each step. If spin is shown, of the measured steps: `spectrum`, a row for each frequency,
+/// and `turning`, a row for each case and algorithm.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let mut parts = Vec::new();
     let (mut spectrum, mut turning) = (Vec::new(), Vec::new());
@@ -22,16 +22,16 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
         let case = Settings::case(frequency);
         let of_case = rows.clone().lazy().filter(col("case").eq(lit(case)));
         for algorithm in &settings.algorithms {
-            let of_both = of_case
+            let group = of_case
                 .clone()
                 .filter(col("algorithm").eq(lit(algorithm.as_str())));
-            let of_both = of_both.collect()?;
-            if of_both.height() > 0 {
-                parts.push(of_one(settings, frequency, algorithm, &of_both)?);
+            let group = group.collect()?;
+            if group.height() > 0 {
+                parts.push(summarize_group(settings, frequency, algorithm, &group)?);
                 if is_spectrum_shown {
-                    let of_both = spectrum_of(settings, frequency, algorithm, &of_both);
-                    turning.extend(TurningRow::of(&of_both));
-                    spectrum.extend(of_both);
+                    let group = spectrum_of(settings, frequency, algorithm, &group);
+                    turning.extend(TurningRow::of(&group));
+                    spectrum.extend(group);
                 }
             }
         }
@@ -54,8 +54,8 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
         ("course".to_owned(), course),
     ]);
     if is_spectrum_shown {
-        tables.insert("spectrum".into(), frame::of(spectrum)?);
-        tables.insert("turning".into(), frame::of(turning)?);
+        tables.insert("spectrum".into(), dataframe::of(spectrum)?);
+        tables.insert("turning".into(), dataframe::of(turning)?);
     }
     Ok(tables)
 }
@@ -66,11 +66,11 @@ struct SpectrumRow {
     case: String,
     algorithm: String,
     turning_hz: f64,
-    /// Mean of all start orientations, along all axes together.
+    /// Mean of all start orientations, summed over the axes.
     power_rad2_s2_per_hz: f64,
 }
 
-/// All of it together, and what of it is fast.
+/// The total power of the angular velocity, and the part above [`FAST_HZ`].
 #[derive(Serialize)]
 struct TurningRow {
     case: String,
@@ -79,7 +79,7 @@ struct TurningRow {
     power_above_20_hz_rad2_s2: f64,
 }
 
-/// From this frequency on turning is fast, in Hz: no body rolls so fast.
+/// Frequencies above this are faster than any body rolls, in Hz.
 const FAST_HZ: f64 = 20.0;
 
 impl TurningRow {
@@ -99,7 +99,7 @@ impl TurningRow {
     }
 }
 
-/// The spectrum of the angular velocity in the steps that count, of one algorithm at one frequency.
+/// The spectrum of the angular velocity in the measured steps, of one algorithm at one frequency.
 fn spectrum_of(
     settings: &Settings,
     frequency: u32,
@@ -112,7 +112,7 @@ fn spectrum_of(
         "angular_velocity_z_rad_s",
     ];
     let [from, to] = settings.measured_steps(frequency).map(f64::from);
-    // By seed, and in it by axis.
+    // By seed, then by axis.
     let mut turns = BTreeMap::<String, [Vec<f64>; 3]>::new();
     for row in rows(steps) {
         let step = row.number("step").unwrap_or_default();
@@ -141,7 +141,7 @@ fn spectrum_of(
     mean.collect()
 }
 
-/// Times of steps with a query.
+/// Query times in µs; missing in steps without a query.
 fn query_us() -> Expr {
     let time = col("query_ns") * lit(1e-3);
     when(col("queries").gt(lit(0)))
@@ -150,8 +150,8 @@ fn query_us() -> Expr {
         .alias("query_us")
 }
 
-/// What one algorithm did at one frequency.
-fn of_one(
+/// The summary of one algorithm at one frequency.
+fn summarize_group(
     settings: &Settings,
     frequency: u32,
     algorithm: &str,
@@ -168,8 +168,8 @@ fn of_one(
             .quantile(lit(q), QuantileMethod::Linear)
             .alias(name)
     };
-    // What rolls turns; what lies there does not count.
-    let rolls = col("angular_velocity_rad_s").gt(lit(ROLLS_RAD_S));
+    // Steps in which the body rolls; a body at rest does not count.
+    let rolls = col("angular_velocity_rad_s").gt(lit(ROLLING_RAD_S));
     let change = || col("spin_change_rad_s").filter(rolls.clone());
     let measured = measured.select([
         query_us().count().cast(DataType::Float64).alias("queries"),
@@ -199,7 +199,7 @@ fn of_one(
         (col("penetration_m").max() * lit(1e3)).alias("penetration_mm_max"),
         (col("true_penetration_m").max() * lit(1e3)).alias("true_penetration_mm_max"),
     ]);
-    // The ground's upper side is at height 0: a body with its origin below is through.
+    // The upper side of the ground is at height 0: a body with its origin below fell through.
     let ends = all
         .group_by_stable([col("seed")])
         .agg([col("y_m")
@@ -223,5 +223,5 @@ fn of_one(
     Ok(row.lazy())
 }
 
-/// From this angular velocity on a body rolls, in rad/s.
-const ROLLS_RAD_S: f64 = 0.2;
+/// Least angular velocity of a rolling body, in rad/s.
+const ROLLING_RAD_S: f64 = 0.2;

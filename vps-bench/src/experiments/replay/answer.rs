@@ -1,15 +1,15 @@
-//! What is right or wrong about an answer.
+//! Judging an answer about a pose.
 
-/// An answer about a pose, and the truth, in metres.
+/// Reported and true penetration at a pose, in metres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
-    /// Of the deepest contact; `None` without a contact.
+    /// Penetration of the deepest contact; `None` without a contact.
     pub(super) reported: Option<f64>,
     pub(super) truth: f64,
 }
 
 impl Answer {
-    /// Reported minus true penetration: negative if it is deeper than reported.
+    /// Reported minus true penetration; negative if the truth is deeper.
     pub(super) fn error(self) -> Option<f64> {
         self.reported.map(|reported| reported - self.truth)
     }
@@ -18,17 +18,18 @@ impl Answer {
         self.reported.is_some_and(|penetration| penetration >= 0.0)
     }
 
-    /// The bodies overlap by more than the tolerance, and no touch was found.
+    /// Whether the bodies overlap by more than the tolerance and no touch was found.
     pub(super) fn is_missed(self, tolerance: f64) -> bool {
         self.truth > tolerance && !self.touches()
     }
 
-    /// They are apart by more than the tolerance, and a touch was found.
+    /// Whether they are apart by more than the tolerance and a touch was found.
     pub(super) fn is_false_touch(self, tolerance: f64) -> bool {
         self.truth < -tolerance && self.touches()
     }
 
-    /// They are closer than the prediction by more than the tolerance, and no contact was given.
+    /// Whether they are closer than the prediction by more than the tolerance and no contact was
+    /// reported.
     pub(super) fn is_silent(self, prediction: f64, tolerance: f64) -> bool {
         self.truth > tolerance - prediction && self.reported.is_none()
     }
@@ -39,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_have_the_sign_of_what_is_reported_too_deep() {
+    fn errors_are_positive_if_reported_too_deep() {
         let answer = |reported, truth| Answer { reported, truth };
         assert_eq!(answer(Some(3.0), 1.0).error(), Some(2.0));
         assert_eq!(answer(Some(-3.0), -1.0).error(), Some(-2.0));
@@ -58,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_near_needs_a_contact() {
+    fn bodies_within_the_prediction_need_a_contact() {
         let is_silent = |reported, truth| Answer { reported, truth }.is_silent(2.0, 0.1);
         assert!(is_silent(None, -1.8) && is_silent(None, 1.0));
         assert!(!is_silent(None, -1.95) && !is_silent(Some(-1.0), -1.8));

@@ -1,11 +1,11 @@
-//! Poses of one fall, put through every algorithm: all answer the same questions.
+//! Replays the poses of one fall through every algorithm.
 //!
-//! Where each algorithm simulates a body of its own, its times contain the behaviour it causes, and
-//! what it says of penetration cannot be compared with what others say. Here the fall is recorded
-//! once a seed, and the algorithms are asked pose by pose.
+//! If each algorithm simulates its own body, its times include the behaviour it causes, and
+//! penetrations of different algorithms cannot be compared. Here the fall is recorded once for each
+//! seed, and all algorithms are queried at the same poses.
 
 mod answer;
-mod show;
+mod present;
 mod summary;
 
 use std::path::Path;
@@ -16,38 +16,38 @@ use rapier3d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 use vps_compare::{Contacts, Prepared};
 
-use super::{Error, Experiment, Measured, drop};
-use crate::algorithms::Algorithms;
-use crate::claims::Tables;
-use crate::config::{not_negative, positive};
-use crate::job::Job;
-use crate::lab::{Body, Lab};
-use crate::page::Block;
+use crate::config::algorithms::Algorithms;
+use crate::config::validate::{not_negative, positive};
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::drop;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::{Body, Context};
+use crate::harness::job::Job;
+use crate::report::document::Block;
 
-/// Which fall is recorded, and who is asked about it.
+/// The recorded fall, and the algorithms that are queried.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
-    /// The fall: of the first of its algorithms at the first of its frequencies, an orientation a
-    /// seed.
+    /// The fall, simulated by the first of its algorithms at the first of its frequencies; the seed
+    /// determines the orientation.
     fall: drop::Settings,
     algorithms: Vec<String>,
-    /// How often the whole trace is put through an algorithm after the warm-up, which is one more;
-    /// the least time of each pose counts.
+    /// Passes of the whole trace after one pass to warm up; the least time of each pose counts.
     passes: u32,
-    /// From which penetration on not to find a touch is to miss it, and from which distance on to
-    /// find one is wrong.
+    /// Penetration beyond which a touch must be found, and separation beyond which none may be.
     tolerance_m: f64,
 }
 
-/// What an algorithm said about one pose.
+/// The answer of an algorithm at one pose.
 #[derive(Clone, Debug, Serialize)]
 struct PoseRow {
     step: u32,
-    /// The least of all passes.
+    /// The least time of all passes.
     query_us: f64,
     contacts: usize,
-    /// Of the deepest contact; empty without one.
+    /// Penetration of the deepest contact; empty without one.
     penetration_m: Option<f32>,
     true_penetration_m: f32,
     x_m: f32,
@@ -60,13 +60,7 @@ struct PoseRow {
 }
 
 impl Settings {
-    /// Another body than the file says.
-    pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
-        self.fall.set_model(model, scale);
-    }
-
-    /// Puts the poses of a trace near the ground through an algorithm: those an engine would ask
-    /// about.
+    /// Queries an algorithm at the poses of a trace that are near the ground, as an engine would.
     fn replay(
         &self,
         trace: &[Pose],
@@ -81,8 +75,8 @@ impl Settings {
             .filter(|row| row.true_penetration_m >= -prediction)
             .collect();
         let up = Vector::new(0.0, 0.5 * self.fall.ground_extents_m[1] as f32, 0.0);
-        // The first pass is the warm-up. Within a pass contacts are kept from pose to pose; asking
-        // about a pose twice in a row would find what was kept of that very pose.
+        // The first pass warms up. Within a pass contacts persist from pose to pose; two queries of
+        // one pose in a row would reuse the contacts of that very pose.
         for pass in 0..=self.passes {
             let mut contacts = Contacts::default();
             let mut next = 0;
@@ -138,6 +132,10 @@ impl Experiment for Settings {
         Ok(())
     }
 
+    fn replace_model(&mut self, model: &str, scale: Option<f64>) -> bool {
+        self.fall.replace_model(model, scale)
+    }
+
     fn algorithms(&self) -> Vec<&str> {
         let recorder = self.fall.algorithms.iter().take(1);
         let all = self.algorithms.iter().chain(recorder);
@@ -156,18 +154,18 @@ impl Experiment for Settings {
         Ok(format!("{fall} {frequency} {}", self.passes))
     }
 
-    fn identity(&self, lab: &Lab) -> Result<String, String> {
-        let recorder = lab.algorithms.get(&self.fall.algorithms[0])?;
+    fn identity(&self, context: &Context) -> Result<String, String> {
+        let recorder = context.algorithms.get(&self.fall.algorithms[0])?;
         let method = serde_json::to_string(&recorder.method).map_err(|e| e.to_string())?;
-        Ok(format!("{} {method}", self.fall.identity(lab)?))
+        Ok(format!("{} {method}", self.fall.identity(context)?))
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        let trace = self.fall.trace(lab, job.seed)?;
-        let (body, ready) = self.fall.ready(lab, &job.algorithm)?;
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
+        let trace = self.fall.trace(context, job.seed)?;
+        let (body, ready) = self.fall.prepare(context, &job.algorithm)?;
         let prepared = ready.prepared()?;
         let rows = self.replay(&trace, &body, prepared)?;
-        Measured::of(&rows, &ready.preparation)
+        Measurement::of(&rows, &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -180,6 +178,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms, folder)
+        present::present(self, tables, algorithms, folder)
     }
 }

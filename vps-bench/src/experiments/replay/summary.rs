@@ -1,16 +1,16 @@
-//! Tables of what algorithms said.
+//! Summarizes the answers at replayed poses.
 
 use polars::prelude::DataFrame;
 use serde::Serialize;
 
 use super::Settings;
 use super::answer::Answer;
-use crate::claims::Tables;
-use crate::experiments::Error;
-use crate::frame::{self, Row, rows};
-use crate::stats::Sample;
+use crate::data::dataframe::{self, Row, rows};
+use crate::data::stats::Sample;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// What one algorithm did, over all poses of all seeds.
+/// One algorithm over all poses of all seeds.
 #[derive(Serialize)]
 struct SummaryRow<'s> {
     algorithm: &'s str,
@@ -26,31 +26,35 @@ struct SummaryRow<'s> {
     error_mm_mean: Option<f64>,
     error_mm_least: Option<f64>,
     error_mm_most: Option<f64>,
-    /// Without its sign.
+    /// Absolute errors.
     error_mm_abs_median: Option<f64>,
     error_mm_abs_p95: Option<f64>,
     error_mm_abs_max: Option<f64>,
-    /// Poses that overlap by more than the tolerance, and those of them no touch was found in.
+    /// Poses that overlap by more than the tolerance, and those of them without a touch found.
     overlaps: usize,
     missed: usize,
     false_touches: usize,
     silent: usize,
 }
 
-/// `summary`: a row an algorithm.
-pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables, Error> {
+/// `summary`: a row for each algorithm.
+pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tables, Error> {
     let mut summary = Vec::new();
     for algorithm in &settings.algorithms {
-        let of_it = rows(frame).filter(|row| row.text("algorithm") == *algorithm);
-        let of_it: Vec<_> = of_it.collect();
-        if !of_it.is_empty() {
-            summary.push(of_one(settings, algorithm, &of_it));
+        let group = rows(records).filter(|row| row.text("algorithm") == *algorithm);
+        let group: Vec<_> = group.collect();
+        if !group.is_empty() {
+            summary.push(summarize_group(settings, algorithm, &group));
         }
     }
-    Ok(Tables::from([("summary".into(), frame::of(summary)?)]))
+    Ok(Tables::from([("summary".into(), dataframe::of(summary)?)]))
 }
 
-fn of_one<'s>(settings: &Settings, algorithm: &'s str, rows: &[Row<'_>]) -> SummaryRow<'s> {
+fn summarize_group<'s>(
+    settings: &Settings,
+    algorithm: &'s str,
+    rows: &[Row<'_>],
+) -> SummaryRow<'s> {
     let column = |name: &str| Sample::of(rows.iter().filter_map(|row| row.number(name)));
     let answers: Vec<_> = rows
         .iter()
@@ -69,19 +73,19 @@ fn of_one<'s>(settings: &Settings, algorithm: &'s str, rows: &[Row<'_>]) -> Summ
     SummaryRow {
         algorithm,
         poses: times.count(),
-        query_us_min: times.least(),
+        query_us_min: times.min(),
         query_us_median: times.median(),
         query_us_mean: times.mean(),
         query_us_p95: times.quantile(0.95),
         query_us_p99: times.quantile(0.99),
-        query_us_max: times.most(),
+        query_us_max: times.max(),
         contacts_mean: column("contacts").mean(),
         error_mm_mean: signed.mean(),
-        error_mm_least: signed.least(),
-        error_mm_most: signed.most(),
+        error_mm_least: signed.min(),
+        error_mm_most: signed.max(),
         error_mm_abs_median: size.median(),
         error_mm_abs_p95: size.quantile(0.95),
-        error_mm_abs_max: size.most(),
+        error_mm_abs_max: size.max(),
         overlaps: count(&|a| a.truth > tolerance),
         missed: count(&|a| a.is_missed(tolerance)),
         false_touches: count(&|a| a.is_false_touch(tolerance)),

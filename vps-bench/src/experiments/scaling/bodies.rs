@@ -1,4 +1,4 @@
-//! Times of steps of a world with many bodies at rest.
+//! Times of the steps of a world with many bodies at rest.
 
 use std::time::Instant;
 
@@ -8,14 +8,14 @@ use rapier3d::prelude::*;
 use vps_compare::Prepared;
 
 use super::{Settings, TimeRow};
-use crate::experiments::orientation::orientation_of;
-use crate::experiments::world::{Stepping, World};
-use crate::lab::{Body, Lab};
+use crate::experiments::shared::orientation::orientation_of;
+use crate::experiments::shared::world::{StepSettings, World};
+use crate::harness::context::{Body, Context};
 
 impl Settings {
-    pub(super) fn steps(&self, algorithm: &str, lab: &Lab) -> Result<Vec<TimeRow>, String> {
-        let body = lab.body(&self.model, self.scale)?;
-        let ready = lab.on_box(algorithm, &body, self.ground_extents_m)?;
+    pub(super) fn steps(&self, algorithm: &str, context: &Context) -> Result<Vec<TimeRow>, String> {
+        let body = context.body(&self.model, self.scale)?;
+        let ready = context.prepare_on_box(algorithm, &body, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
         let mut rows = Vec::new();
         for &count in &self.bodies.counts {
@@ -26,12 +26,12 @@ impl Settings {
             for sample in 0..self.bodies.timed_steps {
                 let start = Instant::now();
                 world.step()?;
-                let took = start.elapsed().as_secs_f64() * 1e6;
+                let time_us = start.elapsed().as_secs_f64() * 1e6;
                 let bodies = f64::from(count);
                 rows.push(TimeRow {
                     size: bodies,
                     sample,
-                    time_us: took / bodies,
+                    time_us: time_us / bodies,
                     contacts: world.contacts().0 as f64 / bodies,
                 });
             }
@@ -47,16 +47,16 @@ impl Settings {
         Ok(rows)
     }
 
-    /// Bodies in random orientations on a square grid, a little above an exact box, since a
-    /// voxelmap of the whole ground would be another one for each number of bodies.
+    /// Bodies in random orientations on a square grid, a little above an exact box: a voxelmap of
+    /// the ground would differ for each number of bodies.
     fn world(&self, body: &Body, prepared: &Prepared, count: u32) -> World {
         let settings = &self.bodies;
-        let stepping = Stepping {
+        let step_settings = StepSettings {
             gravity_m_s2: settings.gravity_m_s2.into(),
             frequency_hz: settings.frequency_hz,
             prediction_m: self.prediction_m.into(),
         };
-        let mut world = stepping.world(&prepared.dispatcher);
+        let mut world = step_settings.new_world(&prepared.dispatcher);
         let side = f64::from(count).sqrt().ceil() as u32;
         let width = settings.spacing_m * side as f32;
         let half = width + 1.0;

@@ -1,8 +1,8 @@
-//! How time grows with what is asked for, one quantity at a time.
+//! How time grows with the size of the problem, one quantity at a time.
 
 mod bodies;
+mod present;
 mod queries;
-mod show;
 mod summary;
 
 use std::path::Path;
@@ -10,15 +10,17 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-use super::{Error, Experiment, Measured};
-use crate::algorithms::Algorithms;
-use crate::claims::Tables;
-use crate::config::positive;
-use crate::job::Job;
-use crate::lab::{Lab, Preparation};
-use crate::page::Block;
+use crate::config::algorithms::Algorithms;
+use crate::config::validate::positive;
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::harness::prepare::Preparation;
+use crate::report::document::Block;
 
-/// What grows. What does not grow is what it is for the fine shell.
+/// The quantities that grow; the others are as for the fine shell.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
@@ -26,21 +28,21 @@ pub(crate) struct Settings {
     scale: f64,
     ground_extents_m: [f64; 3],
     ground_voxel_size_m: f64,
-    /// Up to which distance a manifold is asked for; all other queries ask for overlaps.
+    /// Prediction distance of manifolds; all other queries ask for overlaps.
     prediction_m: f32,
-    /// Of the pointshell.
+    /// Points of the pointshell.
     points: Vec<u32>,
-    /// Of the voxelmap a small shell is pressed into.
+    /// Voxel sizes of the voxelmap a small shell is pressed into.
     voxel_sizes_m: Vec<f64>,
-    /// Segments of a torus, which has the square of it as triangles.
+    /// Segments of a torus; its triangles grow with their square.
     segments: Vec<u32>,
-    /// How far the lowest point is below the ground.
+    /// Depths of the lowest point below the ground.
     depths_m: Vec<f32>,
-    /// Points, depth and voxel size of the shell, where they do not grow.
+    /// Points, depth and voxel size of the shell where they are fixed.
     fixed_points: u32,
     fixed_depth_m: f32,
     fixed_voxel_size_m: f64,
-    /// Of a query: random ones, each asked about so often; the least time of a pose counts.
+    /// Random poses of a query, and repetitions at each; the least time of a pose counts.
     poses: u32,
     repeats: u32,
     bodies: Bodies,
@@ -58,12 +60,12 @@ struct Bodies {
     mass_kg: f32,
     gravity_m_s2: f32,
     frequency_hz: u32,
-    /// Steps until they rest, and those that are timed.
+    /// Steps until the bodies rest, and timed steps.
     settling_steps: u32,
     timed_steps: u32,
 }
 
-/// What grows in a case.
+/// A case, named by the quantity that grows.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Case {
     Points,
@@ -73,26 +75,26 @@ enum Case {
     Bodies,
 }
 
-/// A query of a pointshell.
+/// A query of a pointshell, or of a peer.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Ask {
+enum QueryKind {
     Touches,
     Deepest,
     Manifold,
     Wrench,
-    /// All points one by one, as without a tree.
+    /// All points one by one, without the tree.
     Flat,
     /// The triangle mesh of parry, for comparison.
     Trimesh,
 }
 
-/// A time.
+/// A timed sample.
 #[derive(Clone, Debug, Serialize)]
 struct TimeRow {
-    /// What grows, in the unit of its case.
+    /// The quantity that grows, in the unit of its case.
     size: f64,
     sample: u32,
-    /// Of a query; or of a step, divided by the number of bodies.
+    /// Time of a query; or of a step, divided by the number of bodies.
     time_us: f64,
     /// Points that overlap; or contacts of the engine, divided by the number of bodies.
     contacts: f64,
@@ -117,7 +119,7 @@ impl Case {
         }
     }
 
-    /// What grows, with its unit.
+    /// The quantity that grows, with its unit.
     fn label(self) -> &'static str {
         match self {
             Self::Points => "points of the shell",
@@ -128,24 +130,34 @@ impl Case {
         }
     }
 
-    fn asks(self) -> &'static [Ask] {
-        const QUERIES: [Ask; 5] = [
-            Ask::Touches,
-            Ask::Deepest,
-            Ask::Manifold,
-            Ask::Wrench,
-            Ask::Flat,
+    fn queries(self) -> &'static [QueryKind] {
+        const QUERIES: [QueryKind; 5] = [
+            QueryKind::Touches,
+            QueryKind::Deepest,
+            QueryKind::Manifold,
+            QueryKind::Wrench,
+            QueryKind::Flat,
         ];
         match self {
             Self::Points | Self::Depth => &QUERIES,
-            Self::VoxelSize => &[Ask::Touches, Ask::Deepest, Ask::Manifold, Ask::Wrench],
-            Self::Triangles => &[Ask::Deepest, Ask::Manifold, Ask::Wrench, Ask::Trimesh],
+            Self::VoxelSize => &[
+                QueryKind::Touches,
+                QueryKind::Deepest,
+                QueryKind::Manifold,
+                QueryKind::Wrench,
+            ],
+            Self::Triangles => &[
+                QueryKind::Deepest,
+                QueryKind::Manifold,
+                QueryKind::Wrench,
+                QueryKind::Trimesh,
+            ],
             Self::Bodies => &[],
         }
     }
 }
 
-impl Ask {
+impl QueryKind {
     const ALL: [Self; 6] = [
         Self::Touches,
         Self::Deepest,
@@ -212,17 +224,17 @@ impl Experiment for Settings {
     fn jobs(&self, quick: bool) -> Vec<Job> {
         let mut jobs = Vec::new();
         for case in Case::ALL {
-            let asks = case.asks().iter().map(|ask| ask.name().to_owned());
+            let kinds = case.queries().iter().map(|kind| kind.name().to_owned());
             let algorithms = self.bodies.algorithms.iter().cloned();
             let algorithms = algorithms.filter(|_| case == Case::Bodies);
-            jobs.extend(asks.chain(algorithms).map(|algorithm| Job {
+            jobs.extend(kinds.chain(algorithms).map(|algorithm| Job {
                 case: case.name().into(),
                 algorithm,
                 seed: 0,
             }));
         }
         if quick {
-            jobs.retain(|job| job.algorithm != Ask::Trimesh.name());
+            jobs.retain(|job| job.algorithm != QueryKind::Trimesh.name());
         }
         jobs
     }
@@ -231,19 +243,21 @@ impl Experiment for Settings {
         Ok(serde_json::to_string(self)?)
     }
 
-    fn identity(&self, lab: &Lab) -> Result<String, String> {
-        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    fn identity(&self, context: &Context) -> Result<String, String> {
+        Ok(context.body(&self.model, self.scale)?.identity.clone())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let case = Case::ALL.into_iter().find(|case| case.name() == job.case);
         let case = case.ok_or_else(|| format!("no case `{}`", job.case))?;
-        let ask = Ask::ALL.into_iter().find(|ask| ask.name() == job.algorithm);
-        let rows = match ask {
-            Some(ask) => self.times(case, ask, lab)?,
-            None => self.steps(&job.algorithm, lab)?,
+        let kind = QueryKind::ALL
+            .into_iter()
+            .find(|kind| kind.name() == job.algorithm);
+        let rows = match kind {
+            Some(kind) => self.times(case, kind, context)?,
+            None => self.steps(&job.algorithm, context)?,
         };
-        Measured::of(&rows, &Preparation::default())
+        Measurement::of(&rows, &Preparation::default())
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -256,6 +270,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms, folder)
+        present::present(self, tables, algorithms, folder)
     }
 }

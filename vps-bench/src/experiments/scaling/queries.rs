@@ -12,63 +12,69 @@ use vps_compare::oracle::PlaneOracle;
 use vps_compare::{CollisionAlgorithm, Contacts, Ground, Scene, Trimesh};
 use vps_core::{Asset, Query, Trilinear, Vec3, Weight};
 
-use super::{Ask, Case, Settings, TimeRow};
-use crate::experiments::orientation::orientation_of;
-use crate::lab::Lab;
+use super::{Case, QueryKind, Settings, TimeRow};
+use crate::experiments::shared::orientation::orientation_of;
+use crate::harness::context::Context;
 
-/// How large the torus is that has more and more triangles, and the one that is pressed into a
+/// Sizes of the torus with a growing number of triangles, and of the one that is pressed into a
 /// voxelmap, in metres.
 const TORUS_M: f64 = 0.27;
 const PROBE_M: f64 = 0.1;
 
 impl Settings {
-    pub(super) fn times(&self, case: Case, ask: Ask, lab: &Lab) -> Result<Vec<TimeRow>, String> {
-        let bunny = lab.body(&self.model, self.scale)?;
+    pub(super) fn times(
+        &self,
+        case: Case,
+        kind: QueryKind,
+        context: &Context,
+    ) -> Result<Vec<TimeRow>, String> {
+        let bunny = context.body(&self.model, self.scale)?;
         let mut rows = Vec::new();
         match case {
             Case::Points => {
-                let ground = self.ground(lab)?;
+                let ground = self.ground(context)?;
                 let poses = self.poses_at(&bunny.oracle, self.fixed_depth_m);
                 for &points in &self.points {
-                    let shell = self.asset(&bunny.mesh, self.fixed_voxel_size_m, points, lab)?;
+                    let shell =
+                        self.asset(&bunny.mesh, self.fixed_voxel_size_m, points, context)?;
                     let count = shell.tree.point_count() as f64;
-                    self.ask_all(count, ask, &shell, &ground, &poses, &mut rows);
+                    self.time_shell(count, kind, &shell, &ground, &poses, &mut rows);
                 }
             }
             Case::Depth => {
-                let ground = self.ground(lab)?;
+                let ground = self.ground(context)?;
                 let points = self.fixed_points;
-                let shell = self.asset(&bunny.mesh, self.fixed_voxel_size_m, points, lab)?;
+                let shell = self.asset(&bunny.mesh, self.fixed_voxel_size_m, points, context)?;
                 for &depth in &self.depths_m {
                     let poses = self.poses_at(&bunny.oracle, depth);
                     let size = f64::from(depth) * 1e3;
-                    self.ask_all(size, ask, &shell, &ground, &poses, &mut rows);
+                    self.time_shell(size, kind, &shell, &ground, &poses, &mut rows);
                 }
             }
             Case::VoxelSize => {
                 let probe = models::torus(64).scaled(PROBE_M);
                 let probe = probe.map_err(|e| e.to_string())?;
-                let shell = self.asset(&probe, 0.002, self.fixed_points, lab)?;
+                let shell = self.asset(&probe, 0.002, self.fixed_points, context)?;
                 let poses = self.poses_on(&bunny.mesh);
                 for &size in &self.voxel_sizes_m {
-                    let field = self.asset(&bunny.mesh, size, 100, lab)?;
-                    self.ask_all(size * 1e3, ask, &shell, &field, &poses, &mut rows);
+                    let field = self.asset(&bunny.mesh, size, 100, context)?;
+                    self.time_shell(size * 1e3, kind, &shell, &field, &poses, &mut rows);
                 }
             }
             Case::Triangles => {
-                let ground = self.ground(lab)?;
+                let ground = self.ground(context)?;
                 for &segments in &self.segments {
                     let mesh = models::torus(segments).scaled(TORUS_M);
                     let mesh = mesh.map_err(|e| e.to_string())?;
                     let oracle = PlaneOracle::new(&mesh).map_err(|e| e.to_string())?;
                     let poses = self.poses_at(&oracle, self.fixed_depth_m);
                     let size = mesh.triangles().len() as f64;
-                    if ask == Ask::Trimesh {
-                        self.ask_trimesh(size, &mesh, &poses, &mut rows)?;
+                    if kind == QueryKind::Trimesh {
+                        self.time_trimesh(size, &mesh, &poses, &mut rows)?;
                     } else {
                         let voxel_size = self.fixed_voxel_size_m;
-                        let shell = self.asset(&mesh, voxel_size, self.fixed_points, lab)?;
-                        self.ask_all(size, ask, &shell, &ground, &poses, &mut rows);
+                        let shell = self.asset(&mesh, voxel_size, self.fixed_points, context)?;
+                        self.time_shell(size, kind, &shell, &ground, &poses, &mut rows);
                     }
                 }
             }
@@ -82,42 +88,42 @@ impl Settings {
         mesh: &Mesh,
         voxel_size: f64,
         points: u32,
-        lab: &Lab,
+        context: &Context,
     ) -> Result<Arc<Asset<'static>>, String> {
         let options = BuildOptions {
             resolution: Resolution::VoxelSize(voxel_size),
             points: PointCount::About(points),
             ..BuildOptions::default()
         };
-        let kept = lab.assets.get(mesh, &options, &|_| ());
-        kept.map(|kept| kept.asset).map_err(|e| e.to_string())
+        let cached = context.assets.get(mesh, &options, &|_| ());
+        cached.map(|cached| cached.asset).map_err(|e| e.to_string())
     }
 
-    /// The ground as a voxelmap around its middle.
-    fn ground(&self, lab: &Lab) -> Result<Arc<Asset<'static>>, String> {
+    /// The ground as a voxelmap around its centre.
+    fn ground(&self, context: &Context) -> Result<Arc<Asset<'static>>, String> {
         let mesh = Mesh::cuboid(self.ground_extents_m).map_err(|e| e.to_string())?;
-        self.asset(&mesh, self.ground_voxel_size_m, 100, lab)
+        self.asset(&mesh, self.ground_voxel_size_m, 100, context)
     }
 
-    /// Random orientations, the lowest point at a depth in the ground; around its middle.
+    /// Random orientations above the centre of the ground, the lowest point at a depth in it.
     fn poses_at(&self, oracle: &PlaneOracle, depth: f32) -> Vec<Pose> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let top = 0.5 * self.ground_extents_m[1] as f32;
         let pose = |_| {
             let turned = Pose::from_parts(Vector::ZERO, orientation_of(rng.random()));
-            // How far it is below the upper side now.
+            // The current depth below the upper side.
             let below = oracle.penetration(&turned, top);
             Pose::from_parts(Vector::Y * (below - depth), turned.rotation)
         };
         (0..self.poses).map(pose).collect()
     }
 
-    /// Random orientations around random corners of a mesh.
+    /// Random orientations at random vertices of a mesh.
     fn poses_on(&self, mesh: &Mesh) -> Vec<Pose> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let pose = |_| {
             let corner = rng.random_range(0..mesh.vertices().len());
-            // The middle of the rod, not that of the hole, is at the corner.
+            // The centre of the tube, not that of the hole, is at the vertex.
             let rotation = orientation_of(rng.random());
             let aside = rotation * (Vector::X * (0.35 * PROBE_M as f32));
             Pose::from_parts(mesh.vertices()[corner].as_vec3() + aside, rotation)
@@ -125,10 +131,10 @@ impl Settings {
         (0..self.poses).map(pose).collect()
     }
 
-    fn ask_all(
+    fn time_shell(
         &self,
         size: f64,
-        ask: Ask,
+        kind: QueryKind,
         shell: &Asset<'_>,
         field: &Asset<'_>,
         poses: &[Pose],
@@ -142,13 +148,13 @@ impl Settings {
             rows.push(TimeRow {
                 size,
                 sample,
-                time_us: self.least_us(|| ask.put(&query, self.prediction_m)),
+                time_us: self.least_time_us(|| kind.execute(&query, self.prediction_m)),
                 contacts,
             });
         }
     }
 
-    fn ask_trimesh(
+    fn time_trimesh(
         &self,
         size: f64,
         mesh: &Mesh,
@@ -163,7 +169,7 @@ impl Settings {
         for (sample, pose) in (0..).zip(poses) {
             let mut contacts = Contacts::default();
             let mut is_supported = true;
-            let time_us = self.least_us(|| {
+            let time_us = self.least_time_us(|| {
                 contacts = Contacts::default();
                 let result = prepared.query(pose, self.prediction_m, &mut contacts);
                 is_supported &= result.is_ok();
@@ -181,8 +187,8 @@ impl Settings {
         Ok(())
     }
 
-    /// The least time of the repetitions, after one that warms up.
-    fn least_us(&self, mut what: impl FnMut()) -> f64 {
+    /// The least time of the repetitions, after one to warm up.
+    fn least_time_us(&self, mut what: impl FnMut()) -> f64 {
         what();
         let time = |_| {
             let start = Instant::now();
@@ -193,8 +199,8 @@ impl Settings {
     }
 }
 
-impl Ask {
-    fn put(self, query: &Query<'_, Trilinear<'_>>, prediction: f32) {
+impl QueryKind {
+    fn execute(self, query: &Query<'_, Trilinear<'_>>, prediction: f32) {
         match self {
             Self::Touches => {
                 black_box(query.touches());
@@ -213,7 +219,7 @@ impl Ask {
                 query.for_each_contact_flat(|_| count += 1);
                 black_box(count);
             }
-            // It has no shell.
+            // A triangle mesh has no pointshell.
             Self::Trimesh => {}
         }
     }
@@ -224,7 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn poses_have_the_depth_that_was_asked_for() {
+    fn poses_have_the_requested_depth() {
         let mesh = Mesh::cuboid([0.2, 0.1, 0.1]).unwrap();
         let oracle = PlaneOracle::new(&mesh).unwrap();
         let text = std::fs::read_to_string(concat!(

@@ -1,4 +1,4 @@
-//! Tables of times by size.
+//! Summarizes times by size.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use polars::prelude::DataFrame;
 use serde::Serialize;
 
 use super::{Case, Settings};
-use crate::claims::Tables;
-use crate::experiments::Error;
-use crate::frame::{self, Row, rows};
-use crate::stats::{Sample, exponent};
+use crate::data::dataframe::{self, Row, rows};
+use crate::data::stats::{Sample, power_law_exponent};
+use crate::data::tables::Tables;
+use crate::error::Error;
 
 #[derive(Serialize)]
 struct SizeRow<'s> {
@@ -26,19 +26,19 @@ struct SizeRow<'s> {
 struct SlopeRow<'s> {
     case: &'s str,
     algorithm: &'s str,
-    /// Of the median time over the size.
+    /// Exponent of the median time by size.
     slope: Option<f64>,
-    /// Of the median time over the contacts.
+    /// Exponent of the median time by contacts.
     slope_by_contacts: Option<f64>,
 }
 
-/// `times`: a row a size. `slopes`: a row a case and algorithm.
-pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables, Error> {
+/// `times`: a row for each size. `slopes`: a row for each case and algorithm.
+pub(super) fn summarize(settings: &Settings, records: &DataFrame) -> Result<Tables, Error> {
     let mut groups: BTreeMap<(String, String), BTreeMap<u64, Vec<Row<'_>>>> = BTreeMap::new();
-    for row in rows(frame) {
+    for row in rows(records) {
         let size = row.number("size").unwrap_or_default();
         let key = (row.text("case"), row.text("algorithm"));
-        // Bits of positive numbers have their order.
+        // The bits of positive numbers sort as the numbers do.
         let sizes = groups.entry(key).or_default();
         sizes.entry(size.to_bits()).or_default().push(row);
     }
@@ -48,13 +48,13 @@ pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables
             let Some(sizes) = groups.get(&(case.name().into(), algorithm.into())) else {
                 continue;
             };
-            let of_it: Vec<_> = sizes
+            let group: Vec<_> = sizes
                 .iter()
-                .map(|(bits, rows)| of_one(case, algorithm, f64::from_bits(*bits), rows))
+                .map(|(bits, rows)| summarize_size(case, algorithm, f64::from_bits(*bits), rows))
                 .collect();
             let pairs = |x: fn(&SizeRow<'_>) -> Option<f64>| {
-                exponent(
-                    of_it
+                power_law_exponent(
+                    group
                         .iter()
                         .filter_map(|r| Some((x(r)?, r.time_us_median?))),
                 )
@@ -65,16 +65,16 @@ pub(super) fn summarize(settings: &Settings, frame: &DataFrame) -> Result<Tables
                 slope: pairs(|r| Some(r.size)),
                 slope_by_contacts: pairs(|r| r.contacts_mean),
             });
-            times.extend(of_it);
+            times.extend(group);
         }
     }
     Ok(Tables::from([
-        ("times".into(), frame::of(times)?),
-        ("slopes".into(), frame::of(slopes)?),
+        ("times".into(), dataframe::of(times)?),
+        ("slopes".into(), dataframe::of(slopes)?),
     ]))
 }
 
-fn of_one<'s>(case: Case, algorithm: &'s str, size: f64, rows: &[Row<'_>]) -> SizeRow<'s> {
+fn summarize_size<'s>(case: Case, algorithm: &'s str, size: f64, rows: &[Row<'_>]) -> SizeRow<'s> {
     let column = |name: &str| Sample::of(rows.iter().filter_map(|row| row.number(name)));
     let times = column("time_us");
     SizeRow {
@@ -89,11 +89,11 @@ fn of_one<'s>(case: Case, algorithm: &'s str, size: f64, rows: &[Row<'_>]) -> Si
 }
 
 impl Settings {
-    /// What takes part in a case, in the order of tables.
+    /// Queries or algorithms of a case, in the order of tables.
     pub(super) fn names(&self, case: Case) -> Vec<&str> {
         if case == Case::Bodies {
             return self.bodies.algorithms.iter().map(String::as_str).collect();
         }
-        case.asks().iter().map(|ask| ask.name()).collect()
+        case.queries().iter().map(|kind| kind.name()).collect()
     }
 }

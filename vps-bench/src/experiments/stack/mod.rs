@@ -1,6 +1,6 @@
 //! Balls stacked on each other (section 4.1, last paragraph): how long they stand.
 
-mod show;
+mod present;
 mod simulate;
 mod summary;
 
@@ -9,36 +9,37 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-use super::{Error, Experiment, Measured};
-use crate::algorithms::Algorithms;
-use crate::claims::Tables;
-use crate::config::{not_negative, positive};
-use crate::job::Job;
-use crate::lab::Lab;
-use crate::page::Block;
+use crate::config::algorithms::Algorithms;
+use crate::config::validate::{not_negative, positive};
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::report::document::Block;
 
 /// The balls, and how they are stacked.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     radius_m: f64,
-    /// The mesh VPS samples is an icosahedron divided so many times.
+    /// Subdivisions of the icosahedron whose mesh VPS samples.
     subdivisions: u32,
     mass_kg: f64,
     friction: f64,
-    /// A box.
+    /// Edge lengths of the box.
     ground_extents_m: [f64; 3],
     gravity_m_s2: f64,
     frequency_hz: u32,
-    /// How far ahead contacts are found, for all algorithms.
+    /// Prediction distance of contacts, for all algorithms.
     prediction_m: f64,
-    /// A stack that stands for so long is left alone.
+    /// Time limit of a simulation.
     duration_s: f64,
-    /// How far centres are from the vertical at most, each on its own.
+    /// Largest distance of a centre from the vertical, drawn for each ball.
     offset_m: f64,
-    /// A case each.
+    /// One case for each.
     balls: Vec<u32>,
-    /// Random offsets and orientations, and how many of them in a quick run.
+    /// Number of stacks with random offsets and orientations, and in a quick run.
     stacks: u32,
     quick_stacks: u32,
     seed: u64,
@@ -113,19 +114,19 @@ impl Experiment for Settings {
         Ok(serde_json::to_string(&of_jobs)?)
     }
 
-    fn identity(&self, _: &Lab) -> Result<String, String> {
+    fn identity(&self, _: &Context) -> Result<String, String> {
         Ok(String::new())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let ball = (self.radius_m, self.subdivisions);
-        let ready = lab.ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
+        let ready = context.prepare_ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
         let mut cases = self.balls.iter();
         let balls = cases.find(|balls| Self::case(**balls) == job.case);
         let balls = *balls.ok_or_else(|| format!("no case `{}`", job.case))?;
         let row = self.simulate(prepared, balls, job.seed)?;
-        Measured::of(&[row], &ready.preparation)
+        Measurement::of(&[row], &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -138,6 +139,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         _: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms)
+        present::present(self, tables, algorithms)
     }
 }

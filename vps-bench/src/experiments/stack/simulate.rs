@@ -7,33 +7,33 @@ use serde::Serialize;
 use vps_compare::Prepared;
 
 use super::Settings;
-use crate::experiments::bounce::ball_inertia;
-use crate::experiments::orientation::orientation_of;
-use crate::experiments::world::{Stepping, World};
+use crate::experiments::shared::inertia::ball_inertia;
+use crate::experiments::shared::orientation::orientation_of;
+use crate::experiments::shared::world::{StepSettings, World};
 
-/// How one stack fared.
+/// The result of one stack.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct StackRow {
-    /// The duration of the simulation if it never fell.
+    /// Time until the stack fell; the duration of the simulation if it never did.
     stood_s: f64,
-    /// 1 if it did.
+    /// 1 if it fell, otherwise 0.
     fell: u32,
-    /// While it stood: two balls next to each other, or the lowest and the ground.
+    /// While it stood, between neighbouring balls, or the lowest ball and the ground.
     true_penetration_m_max: f64,
-    /// While it stood: how far the topmost centre came from the vertical through its start.
+    /// While it stood, the distance of the topmost centre from the vertical through its start.
     sway_m_max: f64,
 }
 
-/// Notices when a stack falls: its topmost centre is below half of its height at the start.
+/// Detects when a stack falls: its topmost centre is below half of its height at the start.
 ///
-/// For two balls that is half-way to the ground the upper one rolls down to; for more the stack has
-/// lost at least half of its balls' places.
-struct Watch {
+/// For two balls that is halfway to the ground the upper one rolls down to; a higher stack has lost
+/// at least half of its height.
+struct FallDetector {
     fallen_below_m: f64,
     fell_at_s: Option<f64>,
 }
 
-impl Watch {
+impl FallDetector {
     fn new(start_height_m: f64) -> Self {
         Self {
             fallen_below_m: 0.5 * start_height_m,
@@ -41,7 +41,8 @@ impl Watch {
         }
     }
 
-    /// Takes the height of the topmost centre at a time; tells whether the stack still stands.
+    /// Updates with the height of the topmost centre at a time and returns whether the stack
+    /// stands.
     fn stands(&mut self, time_s: f64, height_m: f64) -> bool {
         if height_m < self.fallen_below_m && self.fell_at_s.is_none() {
             self.fell_at_s = Some(time_s);
@@ -54,7 +55,7 @@ impl Settings {
     /// Simulates one stack until it falls.
     ///
     /// # Errors
-    /// When the engine could not ask the algorithm, or a ball leaves all bounds.
+    /// When the algorithm does not support the pair of shapes, or a ball leaves the world.
     pub(super) fn simulate(
         &self,
         prepared: &Prepared,
@@ -69,7 +70,7 @@ impl Settings {
                 .collect()
         };
         let start = centers(&world)[handles.len() - 1];
-        let mut watch = Watch::new(start.y.into());
+        let mut detector = FallDetector::new(start.y.into());
         let mut row = StackRow {
             stood_s: self.duration_s,
             fell: 0,
@@ -83,7 +84,7 @@ impl Settings {
             if !top.is_finite() {
                 return Err(format!("a ball left all bounds in step {step}"));
             }
-            if !watch.stands(time, top.y.into()) {
+            if !detector.stands(time, top.y.into()) {
                 break;
             }
             let deepest = self.penetration(&centers);
@@ -92,14 +93,14 @@ impl Settings {
             row.sway_m_max = row.sway_m_max.max(sway);
             world.step()?;
         }
-        if let Some(time) = watch.fell_at_s {
+        if let Some(time) = detector.fell_at_s {
             row.stood_s = time;
             row.fell = 1;
         }
         Ok(row)
     }
 
-    /// How deep neighbours are in each other, exact for balls.
+    /// The deepest penetration of neighbours, exact for balls.
     fn penetration(&self, centers: &[Vector]) -> f64 {
         let between = centers.windows(2).map(|pair| {
             let distance = f64::from(pair[0].distance(pair[1]));
@@ -112,12 +113,12 @@ impl Settings {
     /// The ground with its upper side at height 0, and the balls, each touching the next, from the
     /// lowest to the topmost.
     fn world(&self, prepared: &Prepared, balls: u32, stack: u32) -> (World, Vec<RigidBodyHandle>) {
-        let stepping = Stepping {
+        let step_settings = StepSettings {
             gravity_m_s2: self.gravity_m_s2,
             frequency_hz: self.frequency_hz,
             prediction_m: self.prediction_m,
         };
-        let mut world = stepping.world(&prepared.dispatcher);
+        let mut world = step_settings.new_world(&prepared.dispatcher);
         let material = |shape: &SharedShape| {
             ColliderBuilder::new(shape.clone())
                 .friction(self.friction as f32)
@@ -148,13 +149,13 @@ mod tests {
 
     #[test]
     fn a_stack_falls_when_its_top_is_below_half_its_height() {
-        let mut watch = Watch::new(1.5);
-        assert!(watch.stands(0.0, 1.5));
-        assert!(watch.stands(1.0, 0.75));
-        assert!(!watch.stands(2.0, 0.74));
-        assert_eq!(watch.fell_at_s, Some(2.0));
+        let mut detector = FallDetector::new(1.5);
+        assert!(detector.stands(0.0, 1.5));
+        assert!(detector.stands(1.0, 0.75));
+        assert!(!detector.stands(2.0, 0.74));
+        assert_eq!(detector.fell_at_s, Some(2.0));
         // It does not stand up again.
-        assert!(!watch.stands(3.0, 1.5));
-        assert_eq!(watch.fell_at_s, Some(2.0));
+        assert!(!detector.stands(3.0, 1.5));
+        assert_eq!(detector.fell_at_s, Some(2.0));
     }
 }

@@ -1,12 +1,12 @@
-//! Tables of how stacks fared.
+//! Summarizes stacks.
 
 use polars::prelude::*;
 
 use super::Settings;
-use crate::claims::Tables;
-use crate::experiments::Error;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// `summary`: a row a case and algorithm, over all stacks. `runs`: a row a stack.
+/// `summary`: a row for each case and algorithm, over all stacks. `runs`: a row for each stack.
 pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables, Error> {
     let quantile = |q: f64, name: &str| {
         col("stood_s")
@@ -34,7 +34,7 @@ pub(super) fn summarize(settings: &Settings, rows: &DataFrame) -> Result<Tables,
                 .alias("sway_mm_median"),
         ])
         .collect()?;
-    // What a stack is left alone after, without which a time means little.
+    // The time limit, without which a time means little.
     let limit = Column::new(
         "limit_s".into(),
         vec![settings.duration_s; summary.height()],

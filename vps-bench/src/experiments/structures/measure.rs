@@ -1,4 +1,4 @@
-//! One build: its times, and the sizes of what it gave.
+//! One build: its times, and the sizes of the asset.
 
 use std::cell::RefCell;
 use std::time::Instant;
@@ -8,25 +8,26 @@ use vps_build::{BuildOptions, ClosestPoints, PointCount, Stage, build};
 use vps_core::{Asset, Cluster, encode};
 
 use super::{Settings, VOXELMAPS, clustering, vps};
-use crate::experiments::Measured;
-use crate::job::Job;
-use crate::lab::{Lab, Preparation, body_options};
+use crate::experiments::experiment::Measurement;
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::harness::prepare::{Preparation, body_options};
 
 /// An asset, or a level of its tree.
 #[derive(Clone, Debug, Default, Serialize)]
 struct Row {
-    /// Of the tree, 1 being the top; 0 is the asset as a whole.
+    /// Level of the tree from 1 at the top; 0 for the whole asset.
     level: u32,
     voxels_x: u32,
     voxels_y: u32,
     voxels_z: u32,
-    /// Numbers that are stored for them.
+    /// Stored values.
     values: usize,
     map_bytes: usize,
-    /// Points, normals, areas and clusters.
+    /// Size of points, normals, areas and clusters.
     tree_bytes: usize,
     file_bytes: usize,
-    /// What the map says of its errors, near the surface and elsewhere.
+    /// Error bounds of the map, near the surface and elsewhere.
     near_error_m: f32,
     far_error_m: f32,
     points: usize,
@@ -35,7 +36,7 @@ struct Row {
     distances_s: f64,
     points_s: f64,
     tree_s: f64,
-    /// Of the level.
+    /// Clusters of the level.
     clusters: Option<usize>,
     children_mean: Option<f64>,
     children_max: Option<u32>,
@@ -43,10 +44,14 @@ struct Row {
     radius_m_max: Option<f32>,
 }
 
-/// Builds what a job is about, without a cache: this is what is timed.
-pub(super) fn run(settings: &Settings, job: &Job, lab: &Lab) -> Result<Measured, String> {
-    let body = lab.body(&settings.model, settings.scale)?;
-    let whole = body_options(vps(&lab.algorithms, &job.algorithm)?);
+/// Builds the asset of a job without a cache, and times the stages.
+pub(super) fn run(
+    settings: &Settings,
+    job: &Job,
+    context: &Context,
+) -> Result<Measurement, String> {
+    let body = context.body(&settings.model, settings.scale)?;
+    let whole = body_options(vps(&context.algorithms, &job.algorithm)?);
     let map = VOXELMAPS.iter().find(|(case, _)| *case == job.case);
     let options = match (map, clustering(&job.case, job.seed)) {
         (Some((_, map)), _) => BuildOptions {
@@ -57,7 +62,7 @@ pub(super) fn run(settings: &Settings, job: &Job, lab: &Lab) -> Result<Measured,
             } else {
                 ClosestPoints::Exact
             },
-            // Maps are what is measured here.
+            // Only the map is measured.
             points: PointCount::About(1),
             ..whole
         },
@@ -113,10 +118,10 @@ pub(super) fn run(settings: &Settings, job: &Job, lab: &Lab) -> Result<Measured,
     if map.is_none() {
         rows.extend(levels(&asset, &rows[0]));
     }
-    Measured::of(&rows, &preparation)
+    Measurement::of(&rows, &preparation)
 }
 
-/// A row a level, like that of the whole.
+/// A row for each level, with the columns of the whole asset.
 fn levels(asset: &Asset<'_>, whole: &Row) -> Vec<Row> {
     let of_level = |level: u32| {
         let clusters = asset.tree.level(level);

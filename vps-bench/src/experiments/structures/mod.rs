@@ -1,9 +1,9 @@
-//! What an asset is made of: sizes and build times of voxelmaps and pointshells, and pictures of
+//! The structures of an asset: sizes and build times of voxelmaps and pointshells, and pictures of
 //! them.
 
 mod measure;
 mod pictures;
-mod show;
+mod present;
 mod summary;
 
 use std::path::Path;
@@ -12,46 +12,47 @@ use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 use vps_build::{Clustering, Density, Encoding};
 
-use super::{Error, Experiment, Measured, drop};
-use crate::algorithms::{Algorithms, Method, Vps};
-use crate::claims::Tables;
-use crate::config::positive;
-use crate::job::Job;
-use crate::lab::Lab;
-use crate::page::Block;
+use crate::config::algorithms::{Algorithms, Method, Vps};
+use crate::config::validate::positive;
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::drop;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::report::document::Block;
 
-/// What is built, how often, and what is drawn.
+/// The assets that are built and drawn.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     /// A name in `models.toml` or the path of a mesh.
     model: String,
-    /// Metres a unit of the model is long.
+    /// Length of a unit of the model in metres.
     scale: f64,
-    /// Algorithms of the method `vps`: a pointshell each, from coarse to fine. Voxelmaps are those
-    /// of the last.
+    /// Algorithms of the method `vps`, one pointshell for each, from coarse to fine. The last
+    /// determines the voxelmaps.
     shells: Vec<String>,
-    /// How often each thing is built; the middle time counts.
+    /// Repetitions of each build; the median time counts.
     builds: u32,
     quick_builds: u32,
-    /// Algorithms to be drawn beside the segments.
+    /// Algorithms that are drawn beside the segments.
     hull: String,
     decomposition: String,
     /// The level of the tree whose clusters are the segments that are drawn.
     segments_level: u32,
     /// Voxels along the longest side where voxels are drawn one by one.
     drawn_voxels: u32,
-    /// The step at whose pose the traverse is drawn, and how deep the body is put into the ground
-    /// then.
+    /// The step whose pose the traversal is drawn at, and the depth the body is moved to.
     traverse_step: u32,
     traverse_depth_m: f32,
     /// Steps of the fall that are drawn.
     fall_steps: Vec<u32>,
-    /// The first job of these is what falls.
+    /// The fall, of which the first job is drawn.
     fall: drop::Settings,
 }
 
-/// What is in a map, and what of it is stored.
+/// Cases of voxelmaps: encoding and density.
 const VOXELMAPS: [(&str, Map); 8] = [
     (
         "distances_sparse",
@@ -69,7 +70,7 @@ const VOXELMAPS: [(&str, Map); 8] = [
     ("walk_dense", Map::by_walk(Density::Dense)),
 ];
 
-/// How clusters are made; the seed of `nearest` is the number of the build.
+/// Cases of pointshells by clustering; the seed of `nearest` is the number of the build.
 const SHELLS: [&str; 2] = ["halves", "nearest"];
 
 #[derive(Clone, Copy, Debug)]
@@ -88,8 +89,8 @@ impl Map {
         }
     }
 
-    /// Whether the distance of every voxel is found among all triangles, which takes as long as all
-    /// else together.
+    /// Whether every voxel has an exact distance to all triangles, which takes as long as
+    /// everything else together.
     fn is_slow(&self) -> bool {
         self.density == Density::Dense && self.encoding != Encoding::Layers && !self.is_by_walk
     }
@@ -111,14 +112,7 @@ fn clustering(case: &str, seed: u32) -> Option<Clustering> {
 }
 
 impl Settings {
-    /// Another body than the file says.
-    pub(crate) fn set_model(&mut self, model: &str, scale: Option<f64>) {
-        self.model = model.into();
-        self.scale = scale.unwrap_or(self.scale);
-        self.fall.set_model(model, scale);
-    }
-
-    /// The algorithm with most points.
+    /// The algorithm with the most points.
     fn finest(&self) -> &str {
         self.shells.last().map_or("", String::as_str)
     }
@@ -144,6 +138,12 @@ impl Experiment for Settings {
             return Err("structures.shells and structures.fall_steps must not be empty".into());
         }
         self.fall.check()
+    }
+
+    fn replace_model(&mut self, model: &str, scale: Option<f64>) -> bool {
+        self.model = model.into();
+        self.scale = scale.unwrap_or(self.scale);
+        self.fall.replace_model(model, scale)
     }
 
     fn algorithms(&self) -> Vec<&str> {
@@ -183,20 +183,20 @@ impl Experiment for Settings {
         Ok(format!("{} x {}", self.model, self.scale))
     }
 
-    fn identity(&self, lab: &Lab) -> Result<String, String> {
-        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    fn identity(&self, context: &Context) -> Result<String, String> {
+        Ok(context.body(&self.model, self.scale)?.identity.clone())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        measure::run(self, job, lab)
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
+        measure::run(self, job, context)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
         summary::summarize(rows)
     }
 
-    fn draw(&self, lab: &Lab, folder: &Path) -> Result<(), Error> {
-        Ok(pictures::draw(self, lab, folder)?)
+    fn draw(&self, context: &Context, folder: &Path) -> Result<(), Error> {
+        Ok(pictures::draw(self, context, folder)?)
     }
 
     fn present(
@@ -205,6 +205,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms, folder)
+        present::present(self, tables, algorithms, folder)
     }
 }

@@ -1,13 +1,13 @@
-//! Tables of builds.
+//! Summarizes builds.
 
 use polars::prelude::*;
 
 use super::{SHELLS, VOXELMAPS};
-use crate::claims::Tables;
-use crate::experiments::Error;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// `voxelmaps`: a row an encoding and store. `pointshells`: a row a shell and clustering. `levels`: a
-/// row a level of those. Times are the middle ones of all builds.
+/// `voxelmaps`: a row for each encoding and density. `pointshells`: a row for each shell and
+/// clustering. `levels`: a row for each of their levels. Times are medians of all builds.
 pub(super) fn summarize(rows: &DataFrame) -> Result<Tables, Error> {
     let of = |cases: &[&str]| {
         let is_one = |case: &&str| col("case").eq(lit(*case));
@@ -17,7 +17,7 @@ pub(super) fn summarize(rows: &DataFrame) -> Result<Tables, Error> {
     let whole = || col("level").eq(lit(0.0));
     let first = |name: &str| col(name).first();
     let scaled = |from: &str, factor: f64, to: &str| (first(from) * lit(factor)).alias(to);
-    let middle = |name: &str| col(name).median();
+    let median = |name: &str| col(name).median();
     let maps = VOXELMAPS.map(|(case, _)| case);
     let voxelmaps = of(&maps)
         .filter(whole())
@@ -32,8 +32,8 @@ pub(super) fn summarize(rows: &DataFrame) -> Result<Tables, Error> {
             scaled("near_error_m", 1e3, "near_error_mm"),
             scaled("far_error_m", 1e3, "far_error_mm"),
             col("case").count().cast(DataType::Float64).alias("builds"),
-            middle("voxels_s"),
-            middle("distances_s"),
+            median("voxels_s"),
+            median("distances_s"),
             (col("voxels_s") + col("distances_s"))
                 .median()
                 .alias("build_s"),
@@ -48,15 +48,15 @@ pub(super) fn summarize(rows: &DataFrame) -> Result<Tables, Error> {
             scaled("tree_bytes", 1e-6, "tree_mb"),
             scaled("file_bytes", 1e-6, "file_mb"),
             col("case").count().cast(DataType::Float64).alias("builds"),
-            middle("points_s"),
-            middle("tree_s"),
+            median("points_s"),
+            median("tree_s"),
             (col("points_s") + col("tree_s")).median().alias("build_s"),
             (col("voxels_s") + col("distances_s") + col("points_s") + col("tree_s"))
                 .median()
                 .alias("asset_build_s"),
         ])
         .collect()?;
-    // Of the first build: another seed gives another tree.
+    // Of the first build only: other seeds give other trees.
     let levels = of(&SHELLS)
         .filter(whole().not().and(col("seed").eq(lit(0.0))))
         .select([

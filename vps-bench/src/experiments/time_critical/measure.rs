@@ -1,4 +1,4 @@
-//! Asks a query that is ended early, and the whole one.
+//! Compares a query that is ended early with the complete one.
 
 use std::time::{Duration, Instant};
 
@@ -9,47 +9,47 @@ use serde::Serialize;
 use vps_core::{DistanceField, Estimate, PointSphereTree, Query, Vec3, Weight};
 
 use super::{Limit, Settings};
-use crate::experiments::orientation::orientation_of;
-use crate::lab::Body;
-use crate::stats::Sample;
+use crate::data::stats::Sample;
+use crate::experiments::shared::orientation::orientation_of;
+use crate::harness::context::Body;
 
-/// What a batch of poses gave; errors are those against the whole query.
+/// The results of a batch of poses; errors are against the complete query.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct BatchRow {
     poses: usize,
-    /// How many found all there is.
+    /// Number of complete queries.
     complete: usize,
-    /// By how much the deepest contact found is less deep than the deepest there is.
+    /// Deepest penetration minus that of the deepest contact found.
     penetration_error_mm_median: f64,
     penetration_error_mm_p99: f64,
     penetration_error_mm_max: f64,
-    /// By how much the bound on the penetration is above it.
+    /// Bound on the penetration minus the deepest penetration.
     bound_error_mm_median: f64,
     bound_error_mm_p99: f64,
     bound_error_mm_max: f64,
-    /// Length of the difference of forces over that of the force, where there is one.
+    /// Length of the difference of forces, relative to the force where there is one.
     force_error_median: Option<f64>,
     force_error_p99: Option<f64>,
     force_error_max: Option<f64>,
     query_us_median: f64,
     query_us_p99: f64,
     query_us_max: f64,
-    /// Queries that ended after their deadline, and the longest time after it.
+    /// Queries that ended after their deadline, and the largest overrun.
     overruns: Option<usize>,
     overrun_us_max: Option<f64>,
-    /// Those of them that end late however often they are asked.
+    /// Queries among them that end late in every repetition.
     late_by_itself: Option<usize>,
-    /// The same of a loop that only looks at the clock: what the machine does by itself.
+    /// The same for a loop that only reads the clock: the jitter of the machine.
     idle_loops: Option<usize>,
     idle_overruns: Option<usize>,
     idle_overrun_us_max: Option<f64>,
 }
 
-/// Shell to field, of a batch.
+/// Poses of a batch, shell to field.
 pub(super) struct Poses(Vec<Pose>);
 
 impl Poses {
-    /// Random ones of a body in the ground.
+    /// Random poses of a body in the ground.
     pub(super) fn of(settings: &Settings, body: &Body, batch: u32) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(settings.seed.wrapping_add(u64::from(batch)));
         let [from, to] = settings.depth_m;
@@ -68,21 +68,19 @@ impl Poses {
     }
 }
 
-/// So many poses are asked about before any counts: code and data are in the cache then.
+/// Number of queries before the first measured one, to warm the caches.
 const WARM_UP: usize = 200;
 
-/// After so many queries with a deadline the error of one is taken, and an idle loop is run.
-const SAMPLED: usize = 10;
+/// Of queries with a deadline, one in this many is checked for errors and followed by an idle loop.
+const SAMPLE_EVERY: usize = 10;
 
-/// A query that ends late is asked so many times in all: if it never ends in time, it is late by
-/// itself.
+/// Attempts at a query that ends late: if none ends in time, the query is late by itself.
 const TRIES: usize = 10;
 
-/// Asks about all poses.
+/// Queries all poses.
 ///
 /// # Errors
-/// When the query breaks what it promises: a deepest contact deeper than there is, or a bound below
-/// it.
+/// When the query breaks its contract: a contact deeper than the deepest, or a bound below it.
 pub(super) fn measure<F: DistanceField>(
     settings: &Settings,
     limit: Limit,
@@ -95,30 +93,30 @@ pub(super) fn measure<F: DistanceField>(
         std::hint::black_box(Query::new(tree, field, *pose).time_critical(center, |_| true));
     }
     let mut errors = Errors::default();
-    let mut clock = Clock::default();
+    let mut timing = Timing::default();
     for (number, pose) in poses.0.iter().enumerate() {
-        let (estimate, took) = ask(settings, limit, tree, field, center, pose);
-        clock.ended(took, limit, || {
-            ask(settings, limit, tree, field, center, pose).1
+        let (estimate, took) = query_once(settings, limit, tree, field, center, pose);
+        timing.record_query(took, limit, || {
+            query_once(settings, limit, tree, field, center, pose).1
         });
         errors.complete += usize::from(estimate.is_complete);
         let Limit::Deadline(deadline) = limit else {
             errors.add(&Query::new(tree, field, *pose), center, &estimate)?;
             continue;
         };
-        if number % SAMPLED == 0 {
+        if number % SAMPLE_EVERY == 0 {
             errors.add(&Query::new(tree, field, *pose), center, &estimate)?;
             let start = Instant::now();
-            let end = start + settings.told(deadline);
+            let end = start + settings.stop_after(deadline);
             while Instant::now() < end {}
-            clock.idled(start.elapsed(), deadline);
+            timing.record_idle_loop(start.elapsed(), deadline);
         }
     }
-    Ok(row(limit, errors, clock))
+    Ok(row(limit, errors, timing))
 }
 
-/// Asks once; gives how long it took, too.
-fn ask<F: DistanceField>(
+/// Queries once and returns the time as well.
+fn query_once<F: DistanceField>(
     settings: &Settings,
     limit: Limit,
     tree: &PointSphereTree<'_>,
@@ -132,7 +130,7 @@ fn ask<F: DistanceField>(
         Limit::Points(points) => query.time_critical(center, |tested| tested < points),
         Limit::None => query.time_critical(center, |_| true),
         Limit::Deadline(deadline) => {
-            let end = start + settings.told(deadline);
+            let end = start + settings.stop_after(deadline);
             let mut asked = 0;
             query.time_critical(center, |_| {
                 asked += 1;
@@ -143,12 +141,12 @@ fn ask<F: DistanceField>(
     (estimate, start.elapsed())
 }
 
-fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
-    let poses = clock.query_us.len();
+fn row(limit: Limit, errors: Errors, timing: Timing) -> BatchRow {
+    let poses = timing.query_us.len();
     let penetration = quantiles(errors.penetration_mm).map(Option::unwrap_or_default);
     let bound = quantiles(errors.bound_mm).map(Option::unwrap_or_default);
     let force = quantiles(errors.force);
-    let query = quantiles(clock.query_us).map(Option::unwrap_or_default);
+    let query = quantiles(timing.query_us).map(Option::unwrap_or_default);
     let has_deadline = matches!(limit, Limit::Deadline(_));
     BatchRow {
         poses,
@@ -165,22 +163,22 @@ fn row(limit: Limit, errors: Errors, clock: Clock) -> BatchRow {
         query_us_median: query[0],
         query_us_p99: query[1],
         query_us_max: query[2],
-        overruns: has_deadline.then_some(clock.overruns),
-        overrun_us_max: has_deadline.then_some(clock.overrun_us_max),
-        late_by_itself: has_deadline.then_some(clock.late_by_itself),
-        idle_loops: has_deadline.then_some(clock.idle_loops),
-        idle_overruns: has_deadline.then_some(clock.idle_overruns),
-        idle_overrun_us_max: has_deadline.then_some(clock.idle_overrun_us_max),
+        overruns: has_deadline.then_some(timing.overruns),
+        overrun_us_max: has_deadline.then_some(timing.overrun_us_max),
+        late_by_itself: has_deadline.then_some(timing.late_by_itself),
+        idle_loops: has_deadline.then_some(timing.idle_loops),
+        idle_overruns: has_deadline.then_some(timing.idle_overruns),
+        idle_overrun_us_max: has_deadline.then_some(timing.idle_overrun_us_max),
     }
 }
 
 /// Median, 99th percentile and largest.
 fn quantiles(values: Vec<f64>) -> [Option<f64>; 3] {
     let sample = Sample::of(values);
-    [sample.median(), sample.quantile(0.99), sample.most()]
+    [sample.median(), sample.quantile(0.99), sample.max()]
 }
 
-/// How far estimates are from what there is.
+/// Errors of estimates.
 #[derive(Default)]
 struct Errors {
     penetration_mm: Vec<f64>,
@@ -219,9 +217,9 @@ impl Errors {
     }
 }
 
-/// How long queries took.
+/// Times of queries and overruns of deadlines.
 #[derive(Default)]
-struct Clock {
+struct Timing {
     query_us: Vec<f64>,
     overruns: usize,
     overrun_us_max: f64,
@@ -231,29 +229,29 @@ struct Clock {
     idle_overrun_us_max: f64,
 }
 
-impl Clock {
-    fn ended(&mut self, took: Duration, limit: Limit, mut again: impl FnMut() -> Duration) {
+impl Timing {
+    fn record_query(&mut self, took: Duration, limit: Limit, mut again: impl FnMut() -> Duration) {
         self.query_us.push(took.as_secs_f64() * 1e6);
         if let Limit::Deadline(deadline) = limit
             && took > deadline
         {
             self.overruns += 1;
-            self.overrun_us_max = self.overrun_us_max.max(beyond_us(took, deadline));
+            self.overrun_us_max = self.overrun_us_max.max(overrun_us(took, deadline));
             let is_late = (1..TRIES).all(|_| again() > deadline);
             self.late_by_itself += usize::from(is_late);
         }
     }
 
-    fn idled(&mut self, took: Duration, deadline: Duration) {
+    fn record_idle_loop(&mut self, took: Duration, deadline: Duration) {
         self.idle_loops += 1;
         if took > deadline {
             self.idle_overruns += 1;
-            self.idle_overrun_us_max = self.idle_overrun_us_max.max(beyond_us(took, deadline));
+            self.idle_overrun_us_max = self.idle_overrun_us_max.max(overrun_us(took, deadline));
         }
     }
 }
 
-fn beyond_us(took: Duration, deadline: Duration) -> f64 {
+fn overrun_us(took: Duration, deadline: Duration) -> f64 {
     (took - deadline).as_secs_f64() * 1e6
 }
 
@@ -265,19 +263,19 @@ mod tests {
     fn a_query_is_late_by_itself_if_it_never_ends_in_time() {
         let us = Duration::from_micros;
         let limit = Limit::Deadline(us(100));
-        let mut clock = Clock::default();
-        clock.ended(us(100), limit, || us(500));
-        assert_eq!((clock.overruns, clock.late_by_itself), (0, 0));
+        let mut timing = Timing::default();
+        timing.record_query(us(100), limit, || us(500));
+        assert_eq!((timing.overruns, timing.late_by_itself), (0, 0));
         let mut tries = 0;
-        clock.ended(us(130), limit, || {
+        timing.record_query(us(130), limit, || {
             tries += 1;
             us(if tries == TRIES - 1 { 90 } else { 101 })
         });
-        assert_eq!((clock.overruns, clock.late_by_itself), (1, 0));
-        clock.ended(us(120), limit, || us(101));
-        assert_eq!((clock.overruns, clock.late_by_itself), (2, 1));
-        assert!((clock.overrun_us_max - 30.0).abs() < 1e-6);
-        clock.ended(us(9000), Limit::None, || us(9000));
-        assert_eq!((clock.overruns, clock.query_us.len()), (2, 4));
+        assert_eq!((timing.overruns, timing.late_by_itself), (1, 0));
+        timing.record_query(us(120), limit, || us(101));
+        assert_eq!((timing.overruns, timing.late_by_itself), (2, 1));
+        assert!((timing.overrun_us_max - 30.0).abs() < 1e-6);
+        timing.record_query(us(9000), Limit::None, || us(9000));
+        assert_eq!((timing.overruns, timing.query_us.len()), (2, 4));
     }
 }

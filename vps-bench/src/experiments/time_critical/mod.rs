@@ -1,8 +1,8 @@
-//! The time-critical query (section 5, future work): what it knows when its budget is over, and how
-//! well it keeps a deadline.
+//! The time-critical query (section 5, future work): its error when the budget ends, and how well
+//! it keeps a deadline.
 
 mod measure;
-mod show;
+mod present;
 mod summary;
 
 use std::path::Path;
@@ -12,53 +12,54 @@ use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 use vps_rapier::VpsShape;
 
-use super::{Error, Experiment, Measured};
-use crate::algorithms::{Algorithms, Method, SamplingName};
-use crate::claims::Tables;
-use crate::config::{not_negative, positive};
-use crate::job::Job;
-use crate::lab::Lab;
-use crate::page::Block;
+use crate::config::algorithms::{Algorithms, Method, SamplingName};
+use crate::config::validate::{not_negative, positive};
+use crate::data::tables::Tables;
+use crate::error::Error;
+use crate::experiments::experiment::{Experiment, Measurement};
+use crate::harness::context::Context;
+use crate::harness::job::Job;
+use crate::report::document::Block;
 use measure::{Poses, measure};
 
-/// What is asked, and how often.
+/// Body, poses, budgets and deadlines.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     /// A name in `models.toml` or the path of a mesh.
     model: String,
-    /// Metres a unit of the model is long.
+    /// Length of a unit of the model in metres.
     scale: f64,
-    /// A box.
+    /// Edge lengths of the box.
     ground_extents_m: [f64; 3],
-    /// How deep the body is, from and to; negative above the ground.
+    /// Depth of the body, from and to; negative above the ground.
     depth_m: [f64; 2],
-    /// How far it is from the middle of the ground at most, along either side.
+    /// Largest distance from the centre of the ground, along either side.
     aside_m: f64,
-    /// A case each: so many points may be tested.
+    /// Numbers of points that may be tested, one case for each.
     budget_points: Vec<u64>,
-    /// A case each: the query must have ended by then.
+    /// Deadlines of the query, one case for each.
     deadline_us: Vec<u64>,
-    /// The query is told to end so long before its deadline.
+    /// Time before the deadline at which the query is told to end.
     reserve_us: u64,
-    /// It looks at the clock every so many times it is asked whether to go on.
+    /// Number of continuation callbacks between two readings of the clock.
     clock_every: u32,
     poses_per_batch: u32,
-    /// Poses for a deadline, and for a number of points.
+    /// Batches of poses for a deadline, and for a number of points.
     deadline_batches: u32,
     budget_batches: u32,
     quick_batches: u32,
     seed: u64,
-    /// Of the method `vps`, with voxels of the ground.
+    /// Algorithms of the method `vps`, with a voxelmap of the ground.
     algorithms: Vec<String>,
 }
 
-/// What ends a query.
+/// The limit that ends a query.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Limit {
     Points(u64),
     Deadline(Duration),
-    /// Nothing: all is found.
+    /// No limit: the query is complete.
     None,
 }
 
@@ -73,12 +74,12 @@ impl Limit {
 }
 
 impl Settings {
-    /// When a query is told to end that has a deadline.
-    fn told(&self, deadline: Duration) -> Duration {
+    /// The time after which a query with a deadline is told to end.
+    fn stop_after(&self, deadline: Duration) -> Duration {
         deadline.saturating_sub(Duration::from_micros(self.reserve_us))
     }
 
-    fn points(&self) -> impl Iterator<Item = Limit> {
+    fn budgets(&self) -> impl Iterator<Item = Limit> {
         self.budget_points.iter().copied().map(Limit::Points)
     }
 
@@ -88,7 +89,7 @@ impl Settings {
     }
 
     fn limits(&self) -> impl Iterator<Item = Limit> {
-        self.points().chain([Limit::None]).chain(self.deadlines())
+        self.budgets().chain([Limit::None]).chain(self.deadlines())
     }
 }
 
@@ -165,18 +166,18 @@ impl Experiment for Settings {
         Ok(serde_json::to_string(&of_jobs)?)
     }
 
-    fn identity(&self, lab: &Lab) -> Result<String, String> {
-        Ok(lab.body(&self.model, self.scale)?.identity.clone())
+    fn identity(&self, context: &Context) -> Result<String, String> {
+        Ok(context.body(&self.model, self.scale)?.identity.clone())
     }
 
-    fn run(&self, job: &Job, lab: &Lab) -> Result<Measured, String> {
-        let Method::Vps(method) = &lab.algorithms.get(&job.algorithm)?.method else {
+    fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
+        let Method::Vps(method) = &context.algorithms.get(&job.algorithm)?.method else {
             return Err("only the method vps has a time-critical query".into());
         };
         let limit = self.limits().find(|limit| limit.case() == job.case);
         let limit = limit.ok_or_else(|| format!("no case `{}`", job.case))?;
-        let body = lab.body(&self.model, self.scale)?;
-        let ready = lab.on_box(&job.algorithm, &body, self.ground_extents_m)?;
+        let body = context.body(&self.model, self.scale)?;
+        let ready = context.prepare_on_box(&job.algorithm, &body, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
         let shape = prepared.body.as_shape::<VpsShape>();
         let ground = prepared.ground.as_shape::<VpsShape>();
@@ -190,7 +191,7 @@ impl Experiment for Settings {
             SamplingName::Trilinear => measure(self, limit, tree, &map.trilinear(), center, &poses),
             SamplingName::Local => measure(self, limit, tree, &map.local(), center, &poses),
         };
-        Measured::of(&[row?], &ready.preparation)
+        Measurement::of(&[row?], &ready.preparation)
     }
 
     fn summarize(&self, rows: &DataFrame) -> Result<Tables, Error> {
@@ -203,6 +204,6 @@ impl Experiment for Settings {
         algorithms: &Algorithms,
         folder: &Path,
     ) -> Result<Vec<Block>, Error> {
-        show::present(self, tables, algorithms, folder)
+        present::present(self, tables, algorithms, folder)
     }
 }

@@ -1,16 +1,16 @@
-//! Tables of what time-critical queries gave.
+//! Summarizes time-critical queries.
 
 use polars::prelude::*;
 
-use crate::claims::Tables;
-use crate::experiments::Error;
+use crate::data::tables::Tables;
+use crate::error::Error;
 
-/// `summary`: a row a case and algorithm. Counts are added up over batches, the largest values are
-/// those of all; medians and percentiles are those of batches, of which the median is taken.
+/// `summary`: a row for each case and algorithm. Counts are sums and largest values maxima over
+/// batches; medians and percentiles are medians of those of the batches.
 pub(super) fn summarize(rows: &DataFrame) -> Result<Tables, Error> {
     let count = |name: &str| {
         let number = col(name).cast(DataType::Float64);
-        // Of missing values the sum is missing.
+        // The sum of missing values is missing.
         when(number.clone().is_null().all(true))
             .then(lit(NULL))
             .otherwise(number.sum())

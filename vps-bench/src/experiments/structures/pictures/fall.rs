@@ -3,20 +3,23 @@
 use vps_core::{Pose3, Vec3};
 
 use super::{Panels, Subject, draw_mesh, triangles};
-use crate::render::{Canvas, Color, Sheet, View, colors};
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::figure_sheet::FigureSheet;
+use crate::figures::render::view::View;
 
 /// Edge of a tile of the ground, in metres.
 const TILE_M: f32 = 0.1;
 
-pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let steps = &subject.settings.fall_steps;
     let columns = steps.len().min(4) as u32;
     let mut panels = Panels::new(steps.len() as u32, columns, [1040 / columns, 300], 0);
     let poses: Result<Vec<_>, _> = steps.iter().map(|step| subject.pose(*step)).collect();
-    let (middle, longest) = subject.middle();
+    let (middle, longest) = subject.center_and_size();
     for (step, pose) in steps.iter().zip(poses?) {
         let over = pose * middle;
-        // Always as high, wherever the body rolls.
+        // The camera follows the body at a constant height.
         let at = Vec3::new(over.x, 0.52 * longest, over.z);
         let view = View::from(30.0, 14.0, at, 1.65 * longest);
         let mut canvas = panels.canvas();
@@ -29,7 +32,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     Ok(panels.sheet)
 }
 
-/// Tiles around the place below the body; they stay where they are from step to step.
+/// Tiles around the point below the body, fixed in the world.
 fn ground(canvas: &mut Canvas, view: &View, below: Vec3) {
     let tile = |c: f32| (c / TILE_M).floor() as i32;
     for i in -14..14 {
@@ -46,7 +49,7 @@ fn ground(canvas: &mut Canvas, view: &View, below: Vec3) {
     }
 }
 
-/// Straight below the body.
+/// The shadow of the body, straight below it.
 fn shadow(canvas: &mut Canvas, view: &View, subject: &Subject<'_>, pose: Pose3) {
     for corners in triangles(&subject.body.mesh, pose) {
         let flat = corners.map(|c| Vec3::new(c.x, 1e-4, c.z));

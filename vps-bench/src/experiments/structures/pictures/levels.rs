@@ -3,16 +3,19 @@
 use vps_core::{Cluster, Pose3, Vec3};
 
 use super::{Panels, Subject, count, draw_mesh};
-use crate::render::{Canvas, Color, Sheet, View, colors};
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::figure_sheet::FigureSheet;
+use crate::figures::render::view::View;
 
-/// How many levels are drawn, from the second on.
+/// Number of levels that are drawn, from the second on.
 const LEVELS: u32 = 6;
 
-pub(super) fn points(subject: &Subject<'_>) -> Result<Sheet, String> {
-    let (_, longest) = subject.middle();
+pub(super) fn points(subject: &Subject<'_>) -> Result<FigureSheet, String> {
+    let (_, longest) = subject.center_and_size();
     let tree = &subject.fine.tree;
     panels(subject, "points", 1.2, |canvas, view, clusters, color| {
-        // Smaller where there are more of them.
+        // Smaller on levels with more points.
         let radius = 0.075 * longest * (clusters.len() as f32).powf(-0.3);
         for cluster in clusters {
             let point = tree.point(cluster.parent_point as usize);
@@ -21,20 +24,20 @@ pub(super) fn points(subject: &Subject<'_>) -> Result<Sheet, String> {
     })
 }
 
-pub(super) fn spheres(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn spheres(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     panels(subject, "spheres", 1.6, |canvas, view, clusters, color| {
         let ball = |c: &Cluster| (Vec3::from_array(c.center), c.radius, color);
-        canvas.glass(view, clusters.iter().map(ball).collect(), 0.16);
+        canvas.translucent_balls(view, clusters.iter().map(ball).collect(), 0.16);
     })
 }
 
-/// A panel a level, with what is drawn of its clusters over the mesh.
+/// A panel for each level, with its clusters drawn over the mesh.
 fn panels(
     subject: &Subject<'_>,
     what: &str,
     width: f32,
     draw: impl Fn(&mut Canvas, &View, &[Cluster], Color),
-) -> Result<Sheet, String> {
+) -> Result<FigureSheet, String> {
     let tree = &subject.fine.tree;
     let view = subject.view(width);
     let last = tree.level_count().min(1 + LEVELS);

@@ -16,19 +16,23 @@ use vps_build::{BuildOptions, Mesh};
 use vps_core::{Asset, Pose3, Vec3};
 
 use super::{Settings, vps};
-use crate::lab::{Body, Lab, body_options};
-use crate::page::grouped;
-use crate::render::{Anchor, Canvas, Color, Sheet, View};
+use crate::data::number_format::group_digits;
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors::Color;
+use crate::figures::render::figure_sheet::{Anchor, FigureSheet};
+use crate::figures::render::view::View;
+use crate::harness::context::{Body, Context};
+use crate::harness::prepare::body_options;
 
-/// A picture and what it shows.
+/// A picture and its caption.
 pub(super) struct Picture {
-    /// Of its file.
+    /// File name without extension.
     pub(super) stem: &'static str,
     pub(super) caption: &'static str,
-    draw: fn(&Subject<'_>) -> Result<Sheet, String>,
+    draw: fn(&Subject<'_>) -> Result<FigureSheet, String>,
 }
 
-/// All pictures. What depends on a run stands in the pictures themselves.
+/// All pictures. Numbers that depend on a run are in the pictures themselves.
 pub(super) const PICTURES: [Picture; 8] = [
     Picture {
         stem: "shells",
@@ -79,8 +83,8 @@ pub(super) const PICTURES: [Picture; 8] = [
 ];
 
 /// Draws all pictures into a folder.
-pub(super) fn draw(settings: &Settings, lab: &Lab, folder: &Path) -> Result<(), String> {
-    let subject = Subject::new(settings, lab)?;
+pub(super) fn draw(settings: &Settings, context: &Context, folder: &Path) -> Result<(), String> {
+    let subject = Subject::new(settings, context)?;
     for picture in &PICTURES {
         let sheet = (picture.draw)(&subject)?;
         sheet.write(&folder.join(format!("{}.png", picture.stem)))?;
@@ -88,33 +92,37 @@ pub(super) fn draw(settings: &Settings, lab: &Lab, folder: &Path) -> Result<(), 
     Ok(())
 }
 
-/// What pictures are of.
+/// The subject of the pictures.
 struct Subject<'s> {
     settings: &'s Settings,
-    lab: &'s Lab,
+    context: &'s Context,
     body: Rc<Body>,
     coarse: Arc<Asset<'static>>,
     fine: Arc<Asset<'static>>,
-    /// Poses of the fall, step by step, and the time between two of them.
+    /// Poses of the fall, one for each step, and the time of a step.
     poses: Vec<Pose3>,
     step_s: f64,
 }
 
 impl<'s> Subject<'s> {
-    fn new(settings: &'s Settings, lab: &'s Lab) -> Result<Self, String> {
-        let body = lab.body(&settings.model, settings.scale)?;
+    fn new(settings: &'s Settings, context: &'s Context) -> Result<Self, String> {
+        let body = context.body(&settings.model, settings.scale)?;
         let shell = |name: Option<&String>| {
             let name = name.map_or("", String::as_str);
-            cached(lab, &body.mesh, &body_options(vps(&lab.algorithms, name)?))
+            cached(
+                context,
+                &body.mesh,
+                &body_options(vps(&context.algorithms, name)?),
+            )
         };
         let (coarse, fine) = (
             shell(settings.shells.first())?,
             shell(settings.shells.last())?,
         );
-        let (poses, step_s) = (settings.fall.trace(lab, 0)?, settings.fall.step_s());
+        let (poses, step_s) = (settings.fall.trace(context, 0)?, settings.fall.step_s());
         Ok(Self {
             settings,
-            lab,
+            context,
             body,
             coarse,
             fine,
@@ -129,23 +137,27 @@ impl<'s> Subject<'s> {
         pose.ok_or_else(|| format!("structures.fall_steps: there is no step {step}"))
     }
 
-    /// The middle of the mesh and its longest side.
-    fn middle(&self) -> (Vec3, f32) {
+    /// The centre of the mesh and its longest side.
+    fn center_and_size(&self) -> (Vec3, f32) {
         let (low, high) = self.body.mesh.bounds();
         let longest = (high - low).max_element() as f32;
         (low.midpoint(high).as_vec3(), longest)
     }
 
-    /// The mesh as a whole, from the front, the right and above, in a picture so many times as wide
-    /// as the mesh is long.
+    /// A view of the whole mesh from the front, right and above. The picture is `width` times as
+    /// wide as the mesh is long.
     fn view(&self, width: f32) -> View {
-        let (middle, longest) = self.middle();
+        let (middle, longest) = self.center_and_size();
         View::from(25.0, 15.0, middle, width * longest)
     }
 }
 
-fn cached(lab: &Lab, mesh: &Mesh, options: &BuildOptions) -> Result<Arc<Asset<'static>>, String> {
-    let cached = lab.assets.get(mesh, options, &|_| ());
+fn cached(
+    context: &Context,
+    mesh: &Mesh,
+    options: &BuildOptions,
+) -> Result<Arc<Asset<'static>>, String> {
+    let cached = context.assets.get(mesh, options, &|_| ());
     Ok(cached.map_err(|e| e.to_string())?.asset)
 }
 
@@ -161,14 +173,14 @@ fn draw_mesh(canvas: &mut Canvas, view: &View, mesh: &Mesh, pose: Pose3, color: 
     }
 }
 
-/// Pixels of a title.
+/// Size of a title in pixels.
 const TITLE: u32 = 18;
-/// Pixels of other text.
+/// Size of other text in pixels.
 const TEXT: u32 = 16;
 
-/// Panels with titles above them, so many in a row, and room for more below.
+/// A grid of panels with titles above them, and space below.
 struct Panels {
-    sheet: Sheet,
+    sheet: FigureSheet,
     columns: u32,
     size: [u32; 2],
     placed: u32,
@@ -179,24 +191,24 @@ impl Panels {
         let rows = count.div_ceil(columns);
         let height = rows * (size[1] + Self::HEAD) + below;
         Self {
-            sheet: Sheet::new(columns * size[0], height),
+            sheet: FigureSheet::new(columns * size[0], height),
             columns,
             size,
             placed: 0,
         }
     }
 
-    /// Pixels above a panel.
+    /// Height of the title of a panel in pixels.
     const HEAD: u32 = TITLE + 12;
 
-    /// Pixels between two panels.
+    /// Distance of two panels in pixels.
     const GAP: u32 = 8;
 
     fn canvas(&self) -> Canvas {
         Canvas::new(self.size[0] - Self::GAP, self.size[1])
     }
 
-    /// Puts the next one.
+    /// Places the next panel.
     fn push(&mut self, title: &str, canvas: &Canvas) -> Result<(), String> {
         let (column, row) = (self.placed % self.columns, self.placed / self.columns);
         let left = column * self.size[0];
@@ -208,20 +220,20 @@ impl Panels {
         self.sheet.text(title, at, Anchor::Middle, TITLE)
     }
 
-    /// Colours and what they mean, in a line at a place.
+    /// Draws a legend of colours in a line at a position.
     fn legend(&mut self, entries: &[(Color, String)], [left, top]: [u32; 2]) -> Result<(), String> {
         let mut x = left;
         for (color, text) in entries {
             self.sheet.rectangle([x, top - 2], [14, 14], *color);
             self.sheet.text(text, [x + 20, top], Anchor::Left, TEXT)?;
-            // Letters are about half as wide as they are high.
+            // Letters are about half as wide as high.
             x += 48 + text.chars().count() as u32 * TEXT / 2;
         }
         Ok(())
     }
 }
 
-/// A number of things as people read it.
+/// A count with its digits in groups.
 fn count(n: usize) -> String {
-    grouped(&n.to_string())
+    group_digits(&n.to_string())
 }

@@ -4,9 +4,12 @@ use rapier3d::math::Pose;
 use rapier3d::parry::shape::{ConvexPolyhedron, SharedShape};
 
 use super::{Panels, Subject, count, shells};
-use crate::render::{Canvas, Color, Sheet, View, colors};
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::figure_sheet::FigureSheet;
+use crate::figures::render::view::View;
 
-pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let view = subject.view(1.2);
     let mut panels = Panels::new(3, 3, [350, 340], 0);
     let settings = subject.settings;
@@ -26,7 +29,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     let hulls = parts.shapes().iter();
     for (i, (pose, part)) in hulls.enumerate() {
         if let Some(part) = part.as_convex_polyhedron() {
-            polyhedron(&mut canvas, &view, part, *pose, colors::distinct(i));
+            polyhedron(&mut canvas, &view, part, *pose, colors::categorical(i));
         }
     }
     let title = format!("(b) convex decomposition: {} parts", parts.shapes().len());
@@ -40,7 +43,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     }
     let mut canvas = panels.canvas();
     shells::points(&mut canvas, &view, &subject.fine, |point| {
-        colors::distinct(segment[point])
+        colors::categorical(segment[point])
     });
     let segments = count(tree.level(level).len());
     let title = format!("(c) segments of level {level}: {segments}");
@@ -48,9 +51,11 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     Ok(panels.sheet)
 }
 
-/// What an algorithm makes of the mesh; the ground does not matter.
+/// The shape an algorithm makes of the mesh; the ground does not matter.
 fn shape(subject: &Subject<'_>, algorithm: &str) -> Result<SharedShape, String> {
-    let ready = subject.lab.on_box(algorithm, &subject.body, [1.0; 3])?;
+    let ready = subject
+        .context
+        .prepare_on_box(algorithm, &subject.body, [1.0; 3])?;
     Ok(ready.prepared()?.body.clone())
 }
 

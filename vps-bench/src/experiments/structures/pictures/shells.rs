@@ -3,9 +3,12 @@
 use vps_core::{Asset, Pose3, Vec3};
 
 use super::{Panels, Subject, count, draw_mesh};
-use crate::render::{Canvas, Sheet, View, colors};
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors;
+use crate::figures::render::figure_sheet::FigureSheet;
+use crate::figures::render::view::View;
 
-pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let view = subject.view(1.2);
     let mesh = &subject.body.mesh;
     let mut panels = Panels::new(3, 3, [350, 340], 0);
@@ -28,7 +31,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     Ok(panels.sheet)
 }
 
-/// A quarter of how far apart points are.
+/// A quarter of the spacing of the points.
 fn radius(asset: &Asset<'_>) -> f32 {
     let area: f32 = asset.tree.areas().iter().sum();
     0.25 * (area / asset.tree.point_count() as f32).sqrt()
@@ -42,7 +45,7 @@ pub(super) fn points(
     color: impl Fn(usize) -> Vec3,
 ) {
     for i in 0..asset.tree.point_count() {
-        // They touch each other.
+        // Large enough for neighbours to touch.
         canvas.ball(view, asset.tree.point(i), 2.6 * radius(asset), color(i));
     }
 }

@@ -1,17 +1,19 @@
-//! A slice through the middle of the map, and what is stored of it.
+//! A slice through the centre of the map, and its stored voxels.
 
 use vps_core::store::CELL;
 use vps_core::{DistanceField, Store, Vec3, Voxelmap};
 
 use super::{Panels, Subject, TEXT};
-use crate::render::{Anchor, Color, Sheet, View, colors};
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::figure_sheet::{Anchor, FigureSheet};
+use crate::figures::render::view::View;
 
-/// Between two lines of the same distance, in metres.
-const LINES_M: f32 = 0.02;
+/// Distance between two contour lines, in metres.
+const CONTOUR_STEP_M: f32 = 0.02;
 
 const SIDE: u32 = 520;
 
-pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let map = &subject.fine.voxelmap;
     let bounds = map.grid().bounds();
     let middle = bounds.min.midpoint(bounds.max);
@@ -25,24 +27,25 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
             .cmple(0.5 * extents.truncate())
             .all()
     };
-    let scale = Scale::of(map);
+    let color_map = ColorMap::of(map);
 
     let mut panels = Panels::new(2, 2, [SIDE, SIDE], 66);
     let mut canvas = panels.canvas();
     let field = map.trilinear();
     let line = 0.5 * width / SIDE as f32;
-    canvas.fill(&view, |point| {
+    canvas.fill_background(&view, |point| {
         if !is_inside(point) {
             return colors::WHITE;
         }
         let value = field.penetration(point, Vec3::ZERO);
-        let to_line = (value / LINES_M - (value / LINES_M).round()).abs() * LINES_M;
+        let to_line =
+            (value / CONTOUR_STEP_M - (value / CONTOUR_STEP_M).round()).abs() * CONTOUR_STEP_M;
         if value.abs() < 1.5 * line {
             colors::INK
         } else if to_line < 0.5 * line {
-            scale.color(value) * 0.75
+            color_map.color(value) * 0.75
         } else {
-            scale.color(value)
+            color_map.color(value)
         }
     });
     let [nx, ny, nz] = map.grid().dims();
@@ -50,13 +53,13 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     panels.push(&title, &canvas)?;
 
     let mut canvas = panels.canvas();
-    canvas.fill(&view, |point| {
+    canvas.fill_background(&view, |point| {
         if !is_inside(point) {
             return colors::WHITE;
         }
         let voxel = map.grid().voxel_at(point);
         let color = STORED[stored(map.store(), voxel) as usize].0;
-        // Where two cells meet, and where the surface is.
+        // Lines between cells, and the surface.
         let is_edge = [0, 1].iter().any(|&axis| voxel[axis] % CELL == 0);
         if field.penetration(point, Vec3::ZERO).abs() < 1.5 * line {
             colors::INK
@@ -68,13 +71,13 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
     });
     panels.push("what is stored of each cell of 8 x 8 x 8 voxels", &canvas)?;
     let top = SIDE + Panels::HEAD + 8;
-    scale.draw(&mut panels.sheet, [60, top])?;
+    color_map.draw(&mut panels.sheet, [60, top])?;
     let entries = STORED.map(|(color, text)| (color, text.to_owned()));
     panels.legend(&entries, [SIDE + 30, top + 4])?;
     Ok(panels.sheet)
 }
 
-/// What is known of a voxel, and its colour.
+/// How densely a voxel is stored.
 #[derive(Clone, Copy)]
 enum Stored {
     Lattice,
@@ -110,13 +113,13 @@ fn stored(store: &Store<'_>, voxel: [u32; 3]) -> Stored {
     }
 }
 
-/// Colours of penetrations: blue outside, orange inside.
-struct Scale {
-    least: f32,
-    most: f32,
+/// A colour map of penetrations: blue outside, orange inside.
+struct ColorMap {
+    min: f32,
+    max: f32,
 }
 
-impl Scale {
+impl ColorMap {
     fn of(map: &Voxelmap<'_>) -> Self {
         let [nx, ny, nz] = map.grid().dims();
         let values = (0..ny).flat_map(|y| (0..nx).map(move |x| [x, y, nz / 2]));
@@ -125,26 +128,23 @@ impl Scale {
             (least.min(v), most.max(v))
         });
         Self {
-            least: (least / LINES_M).floor() * LINES_M,
-            most: (most / LINES_M).ceil() * LINES_M,
+            min: (least / CONTOUR_STEP_M).floor() * CONTOUR_STEP_M,
+            max: (most / CONTOUR_STEP_M).ceil() * CONTOUR_STEP_M,
         }
     }
 
     fn color(&self, value: f32) -> Color {
         if value < 0.0 {
-            Color::new(0.93, 0.96, 0.98).lerp(colors::BLUE, (value / self.least).min(1.0))
+            Color::new(0.93, 0.96, 0.98).lerp(colors::BLUE, (value / self.min).min(1.0))
         } else {
-            Color::new(0.99, 0.93, 0.80).lerp(colors::VERMILION, (value / self.most).min(1.0))
+            Color::new(0.99, 0.93, 0.80).lerp(colors::VERMILION, (value / self.max).min(1.0))
         }
     }
 
-    /// Two bars, one a side: inside distances are much smaller than outside.
-    fn draw(&self, sheet: &mut Sheet, [left, top]: [u32; 2]) -> Result<(), String> {
+    /// Draws two bars, since distances inside are much smaller than outside.
+    fn draw(&self, sheet: &mut FigureSheet, [left, top]: [u32; 2]) -> Result<(), String> {
         let (length, gap) = (180, 20);
-        for (x, from, to) in [
-            (left, self.least, 0.0),
-            (left + length + gap, 0.0, self.most),
-        ] {
+        for (x, from, to) in [(left, self.min, 0.0), (left + length + gap, 0.0, self.max)] {
             for i in 0..length {
                 let value = from + (to - from) * (i as f32 + 0.5) / length as f32;
                 sheet.rectangle([x + i, top], [1, 18], self.color(value));

@@ -1,28 +1,31 @@
-//! One traverse of the tree (Algorithm 1), with the sphere test alone.
+//! One traversal of the tree (Algorithm 1), with the sphere test alone.
 
 use vps_core::{Cluster, DistanceField, HalfSpace, PointSphereTree, Pose3, Query, Vec3, Work};
 
 use super::{Panels, Subject, count, draw_mesh};
-use crate::render::{Canvas, Color, Sheet, View, colors};
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::figure_sheet::{Anchor, FigureSheet};
+use crate::figures::render::view::View;
 
 const SIDE: u32 = 520;
 
-/// How dark the ground is.
+/// Colour of the ground.
 const GROUND: Color = Color::new(0.90, 0.88, 0.84);
 
-pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let mut pose = subject.pose(subject.settings.traverse_step)?;
     let (tree, ground) = (&subject.coarse.tree, HalfSpace::new(Vec3::Y));
-    // Deep enough for several points to be inside.
+    // Moved so deep that several points are inside.
     let deepest = Query::new(tree, &ground, pose)
         .closest()
         .ok_or("the pose is not finite")?;
     pose.translation.y += deepest.penetration - subject.settings.traverse_depth_m;
     let deepest = pose * deepest.position;
-    let seen = Traverse::of(tree, &ground, pose);
+    let seen = Traversal::of(tree, &ground, pose);
 
-    let middle = pose * subject.middle().0;
-    let (_, longest) = subject.middle();
+    let middle = pose * subject.center_and_size().0;
+    let (_, longest) = subject.center_and_size();
     let mut panels = Panels::new(2, 2, [SIDE, 430], 66);
     let near = Vec3::new(deepest.x, 0.012, deepest.z);
     for (title, level, view) in [
@@ -38,7 +41,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         ),
     ] {
         let mut canvas = panels.canvas();
-        canvas.fill(
+        canvas.fill_background(
             &view,
             |point| {
                 if point.y < 0.0 { GROUND } else { colors::WHITE }
@@ -81,33 +84,30 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         work.spheres(),
         work.points()
     );
-    panels.sheet.text(
-        &all,
-        [40, top + 26],
-        crate::render::Anchor::Left,
-        super::TEXT,
-    )?;
+    panels
+        .sheet
+        .text(&all, [40, top + 26], Anchor::Left, super::TEXT)?;
     Ok(panels.sheet)
 }
 
 const PASSED: Color = colors::BLUE;
 
-/// A cluster whose sphere was held against the field.
+/// A cluster whose sphere was tested against the field.
 struct Tested {
     cluster: Cluster,
     level: u32,
     reaches: bool,
 }
 
-/// What a traverse looked at.
-struct Traverse {
+/// The spheres and points a traversal tested.
+struct Traversal {
     spheres: Vec<Tested>,
     /// Points, and whether they are inside.
     points: Vec<(usize, bool)>,
 }
 
-impl Traverse {
-    /// Level by level, as with the paper's queue.
+impl Traversal {
+    /// Traverses level by level, as with the queue of the paper.
     fn of(tree: &PointSphereTree<'_>, field: &impl DistanceField, pose: Pose3) -> Self {
         let mut seen = Self {
             spheres: Vec::new(),
@@ -140,7 +140,7 @@ impl Traverse {
         seen
     }
 
-    /// Spheres of a level, or of all (0), with the points in front of them.
+    /// Draws the spheres of a level, or of all levels (0), with the points in front of them.
     fn draw(
         &self,
         canvas: &mut Canvas,
@@ -156,7 +156,7 @@ impl Traverse {
             let center = pose * Vec3::from_array(tested.cluster.center);
             (center, tested.cluster.radius, color)
         };
-        canvas.glass(view, chosen.map(ball).collect(), 0.03);
+        canvas.translucent_balls(view, chosen.map(ball).collect(), 0.03);
         for &(point, is_inside) in &self.points {
             let (color, radius) = if is_inside {
                 (colors::VERMILION, 0.0030)
@@ -174,9 +174,9 @@ mod tests {
 
     use super::*;
 
-    /// What it finds is what the query finds.
+    /// The traversal finds the contacts of the query.
     #[test]
-    fn the_traverse_finds_all_contacts() {
+    fn the_traversal_finds_all_contacts() {
         let mesh = Mesh::icosphere(0.1, 3).unwrap();
         let options = BuildOptions {
             points: PointCount::About(400),
@@ -185,7 +185,7 @@ mod tests {
         let asset = build(&mesh, &options, &|_| ()).unwrap().asset;
         let ground = HalfSpace::new(Vec3::Y);
         let pose = Pose3::from_translation(Vec3::new(0.0, 0.09, 0.0));
-        let seen = Traverse::of(&asset.tree, &ground, pose);
+        let seen = Traversal::of(&asset.tree, &ground, pose);
         let mut expected = Vec::new();
         let query = Query::new(&asset.tree, &ground, pose);
         query.for_each_contact_flat(|contact| expected.push(contact.point as usize));

@@ -1,12 +1,15 @@
-//! Voxels of a map with large ones, by layer.
+//! The voxels of a coarse map, coloured by layer.
 
 use vps_build::{BuildOptions, Density, Encoding, PointCount, Resolution};
 use vps_core::{Vec3, Voxelmap};
 
 use super::{Panels, Subject, TEXT, cached};
-use crate::render::{Anchor, Canvas, Color, Sheet, View, colors};
+use crate::figures::render::canvas::Canvas;
+use crate::figures::render::colors::{self, Color};
+use crate::figures::render::figure_sheet::{Anchor, FigureSheet};
+use crate::figures::render::view::View;
 
-pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
+pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let options = BuildOptions {
         resolution: Resolution::VoxelsAlongLongest(subject.settings.drawn_voxels),
         // The surface may reach into the first layer around it.
@@ -16,7 +19,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         density: Density::Dense,
         ..BuildOptions::default()
     };
-    let asset = cached(subject.lab, &subject.body.mesh, &options)?;
+    let asset = cached(subject.context, &subject.body.mesh, &options)?;
     let map = &asset.voxelmap;
     let view = subject.view(1.42);
     let [nx, ny, nz] = map.grid().dims();
@@ -44,7 +47,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<Sheet, String> {
         }
         panels.push(title, &canvas)?;
     }
-    // One rectangle a layer.
+    // One rectangle for each layer.
     let top = 470 + Panels::HEAD + 8;
     let each = 26;
     let left = 520 - each * (deepest as u32 + 1) / 2;
@@ -66,11 +69,10 @@ fn layer(map: &Voxelmap<'_>, voxel: [u32; 3]) -> i32 {
     map.store().value(voxel).round() as i32
 }
 
-/// How light the sides of voxels are, by axis: those of the cut have the colours of the legend.
+/// Shading of the faces of voxels by axis; the faces of the cut have the colours of the legend.
 const SHADES: [f32; 3] = [0.7, 0.88, 1.0];
 
-/// Those sides of a voxel that no other one hides, a little smaller so that voxels can be told
-/// apart.
+/// Draws the visible faces of a voxel, a little smaller so that voxels can be told apart.
 fn cube(
     canvas: &mut Canvas,
     view: &View,
@@ -84,7 +86,7 @@ fn cube(
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let mut next = voxel;
-            // The map's outermost layer is never drawn: there is a next voxel on every side.
+            // The outermost layer of the map is never drawn, so that every face has a neighbour.
             next[axis] = next[axis].wrapping_add_signed(side as i32);
             if is_drawn(next) {
                 continue;
@@ -122,12 +124,12 @@ mod tests {
 
     use super::*;
 
-    /// Each layer is drawn as what it is: one voxel further inside, one layer more.
+    /// The layer increases by one with each voxel inwards.
     #[test]
     fn no_layer_is_missing() {
         let mesh = Mesh::cuboid([0.21; 3]).unwrap();
-        // Some multiples of this voxel size are rounded down in 32 bits. Only a dense map holds every
-        // layer: a sparse one interpolates them inside.
+        // Some multiples of this voxel size are rounded down in 32 bits. Only a dense map holds
+        // every layer: a sparse one interpolates them inside.
         let options = BuildOptions {
             resolution: Resolution::VoxelsAlongLongest(41),
             margin: 2,

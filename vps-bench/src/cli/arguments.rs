@@ -1,0 +1,105 @@
+//! Arguments and options, with the help that `--help` prints.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+use crate::harness::job::Shard;
+use crate::harness::run::Selection;
+
+/// Experiments on collision detection: runs them, writes records, tables, figures and verdicts.
+#[derive(Parser)]
+#[command(version)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Command,
+    /// Folder of the experiments, of models.toml and algorithms.toml
+    #[arg(long, global = true, default_value = "experiments")]
+    pub(super) experiments: PathBuf,
+    /// Where models and assets are kept
+    #[arg(long, global = true, default_value = ".cache")]
+    pub(super) cache: PathBuf,
+    /// Folder of the reports
+    #[arg(long, global = true, default_value = "reports")]
+    pub(super) out: PathBuf,
+}
+
+#[derive(Subcommand)]
+pub(super) enum Command {
+    /// List the experiments
+    List,
+    /// Fetch the models, all of them or those named
+    Fetch { models: Vec<String> },
+    /// Run experiments; what was run before by the same program with the same settings is kept
+    Run {
+        /// Names of experiments: files in the folder of experiments without `.toml`
+        #[arg(required = true)]
+        names: Vec<String>,
+        #[command(flatten)]
+        selection: SelectionArguments,
+        /// Another model: a name in models.toml or the path of a mesh
+        #[arg(long)]
+        model: Option<String>,
+        /// Metres a unit of that model is long
+        #[arg(long, requires = "model")]
+        scale: Option<f64>,
+    },
+    /// Write the report from the tables of all experiments that were run, or of those named
+    Report {
+        names: Vec<String>,
+        /// A file to put tables into, between `<!-- NAME -->` and `<!-- /NAME -->`
+        #[arg(long)]
+        splice: Option<PathBuf>,
+        /// Write nothing; fail if that file or the report is not what it should be
+        #[arg(long, requires = "splice")]
+        check: bool,
+    },
+    /// Judge the claims; fails if one turned out otherwise than the experiments say, but not of
+    /// quick runs
+    Check { names: Vec<String> },
+    /// Times in folder B as ratios of those in folder A, such as of two machines
+    Compare {
+        a: PathBuf,
+        b: PathBuf,
+        /// A row a time, for other programs
+        #[arg(long)]
+        csv: bool,
+    },
+    /// Fetch, run and report everything, then check the claims; of a part of the jobs there is no
+    /// report until the other parts are there
+    Reproduce {
+        #[command(flatten)]
+        selection: SelectionArguments,
+        /// A file to put tables into
+        #[arg(long)]
+        splice: Option<PathBuf>,
+    },
+}
+
+#[derive(clap::Args)]
+pub(super) struct SelectionArguments {
+    /// As little as shows that all works
+    #[arg(long)]
+    quick: bool,
+    /// Only jobs with this in their name, EXPERIMENT/CASE.ALGORITHM.SEED
+    #[arg(long)]
+    filter: Option<String>,
+    /// Only a part of the jobs, such as 2/3; copy the folders `raw` of all parts together and run
+    /// again for the tables
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Leave it to the system on which core things are timed
+    #[arg(long)]
+    unpinned: bool,
+}
+
+impl SelectionArguments {
+    pub(super) fn selection(&self) -> Selection<'_> {
+        Selection {
+            quick: self.quick,
+            filter: self.filter.as_deref(),
+            shard: self.shard.unwrap_or(Shard::WHOLE),
+            is_pinned: !self.unpinned,
+        }
+    }
+}

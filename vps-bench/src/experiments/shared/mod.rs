@@ -1,0 +1,6 @@
+//! Parts that several kinds of experiments use.
+
+pub(super) mod inertia;
+pub(super) mod orientation;
+pub(super) mod power_law;
+pub(super) mod world;

@@ -1,0 +1,108 @@
+//! The problem: two meshes, poses, and the exact penetrations.
+
+use std::path::Path;
+
+use rapier3d::math::Pose;
+use vps_build::{ExactSolid, Mesh, read_mesh};
+use vps_compare::oracle::{Exact, SolidOracle};
+
+use super::args::Args;
+use super::progress::Progress;
+use super::{Error, poses};
+
+/// The inputs that all algorithms share.
+pub(super) struct Problem {
+    pub(super) mesh_a: Mesh,
+    pub(super) mesh_b: Mesh,
+    /// Whether each mesh was a solid without repair.
+    pub(super) watertight: [bool; 2],
+    /// Spread of random poses.
+    pub(super) spread_m: Option<f64>,
+    pub(super) prediction_m: f64,
+    pub(super) tolerance_m: f64,
+    /// Poses of B in the frame of A, with the exact penetration if neither mesh is open.
+    pub(super) poses: Vec<(Pose, Option<Exact>)>,
+    /// Uncertainty of the exact penetration if its search ended, in metres.
+    pub(super) exact_tolerance_m: f64,
+    /// Whether A and B were left open, so that no penetration is exact.
+    pub(super) is_open: [bool; 2],
+}
+
+/// Defaults, relative to the longest side of the smaller mesh.
+const SPREAD: f64 = 0.05;
+const PREDICTION: f64 = 0.02;
+const TOLERANCE: f64 = 0.001;
+
+impl Problem {
+    pub(super) fn of(args: &Args, progress: &Progress) -> Result<Self, Error> {
+        let (mesh_a, mesh_b) = meshes(args)?;
+        let read = args.poses.as_deref().map(poses::read).transpose()?;
+        progress.set("sorting triangles".into());
+        let solid_a = solid(&args.mesh_a, &mesh_a, args)?;
+        let solid_b = solid(&args.mesh_b, &mesh_b, args)?;
+        let watertight = [&solid_a, &solid_b].map(|solid| solid.repairs().is_none());
+        let oracle = SolidOracle::new(solid_a, solid_b);
+        let is_open = oracle.is_open();
+        let longest = |mesh: &Mesh| {
+            let (low, high) = mesh.bounds();
+            (high - low).max_element()
+        };
+        let size = longest(&mesh_a).min(longest(&mesh_b));
+        let spread_m = args.spread.unwrap_or(SPREAD * size);
+        let is_random = read.is_none();
+        let poses = match read {
+            Some(poses) => poses,
+            None => {
+                progress.set("moving B to where it touches A".into());
+                poses::random(
+                    [&mesh_a, &mesh_b],
+                    &oracle,
+                    args.random,
+                    args.seed,
+                    spread_m,
+                )?
+            }
+        };
+        let count = poses.len();
+        let exact = |(i, pose): (usize, Pose)| {
+            progress.set(format!("exact penetration of pose {} of {count}", i + 1));
+            let is_known = !is_open.contains(&true);
+            (pose, is_known.then(|| oracle.penetration(&pose)))
+        };
+        Ok(Self {
+            watertight,
+            spread_m: is_random.then_some(spread_m),
+            prediction_m: args.prediction.unwrap_or(PREDICTION * size),
+            tolerance_m: args.tolerance.unwrap_or(TOLERANCE * size),
+            poses: poses.into_iter().enumerate().map(exact).collect(),
+            exact_tolerance_m: oracle.tolerance_m(),
+            is_open,
+            mesh_a,
+            mesh_b,
+        })
+    }
+
+    /// Whether an exact penetration is exact enough to measure errors by.
+    pub(super) fn is_certain(&self, exact: &Exact) -> bool {
+        exact.uncertainty_m <= self.tolerance_m.max(self.exact_tolerance_m)
+    }
+}
+
+/// A and B in metres.
+pub(super) fn meshes(args: &Args) -> Result<(Mesh, Mesh), Error> {
+    Ok((
+        mesh(&args.mesh_a, args.scale_a, "--scale-a")?,
+        mesh(&args.mesh_b, args.scale_b, "--scale-b")?,
+    ))
+}
+
+fn mesh(path: &Path, scale: f64, option: &str) -> Result<Mesh, Error> {
+    let mesh = read_mesh(path, None)?;
+    let scaled = mesh.scaled(scale);
+    Ok(scaled.map_err(|e| format!("{}: {option}: {e}", path.display()))?)
+}
+
+fn solid(path: &Path, mesh: &Mesh, args: &Args) -> Result<ExactSolid, Error> {
+    let solid = ExactSolid::new(mesh, args.sign.into());
+    Ok(solid.map_err(|e| format!("{}: {e}", path.display()))?)
+}
