@@ -148,12 +148,23 @@ fn report() {
         )
         .expect("memory");
         records
-            .write_record([query, field, &spheres, &points, &instructions, &first, &last])
+            .write_record([
+                query,
+                field,
+                &spheres,
+                &points,
+                &instructions,
+                &first,
+                &last,
+            ])
             .expect("memory");
     }
     print!("{text}");
     let records = records.into_inner().expect("memory");
-    for (name, bytes) in [("profile.csv", &records[..]), ("profile.md", text.as_bytes())] {
+    for (name, bytes) in [
+        ("profile.csv", &records[..]),
+        ("profile.md", text.as_bytes()),
+    ] {
         write_atomically(&reported(name), bytes).expect("a place for the report");
     }
 }
@@ -163,7 +174,10 @@ fn gate() -> ExitCode {
     build_assets();
     let kept = reported("profile.csv");
     let mut is_passed = true;
-    println!("{:<32} {:<8} {:>12} {:>12} {:>8}", "query", "field", "instructions", "kept", "change");
+    println!(
+        "{:<32} {:<8} {:>12} {:>12} {:>8}",
+        "query", "field", "instructions", "kept", "change"
+    );
     let file = File::open(&kept).expect("profile.csv, which `just query-profile` writes");
     for record in csv::Reader::from_reader(file).records() {
         let record = record.expect("a record");
@@ -173,13 +187,21 @@ fn gate() -> ExitCode {
         let change = instructions / kept - 1.0;
         let is_near = change.abs() <= TOLERANCE;
         is_passed &= is_near;
-        let verdict = if is_near { "" } else { "  differs by more than 2 %" };
+        let verdict = if is_near {
+            ""
+        } else {
+            "  differs by more than 2 %"
+        };
         println!(
             "{query:<32} {field:<8} {instructions:>12.0} {kept:>12.0} {:>+7.2}%{verdict}",
             100.0 * change,
         );
     }
-    if is_passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if is_passed {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 /// What callgrind counts: instructions, reads, writes, and misses of these three in the first and in
