@@ -23,7 +23,8 @@ use crate::simd::Vectors;
 pub(crate) struct Extrapolation {
     /// From the grid to the points, in metres: w.
     offset: Vectors,
-    /// From the box of the solid to the grid along the axes on which the points are outside: g.
+    /// From the box of the solid to the closest points of the grid, in metres: g along the axes on
+    /// which the points are outside.
     gap: Vectors,
 }
 
@@ -31,15 +32,9 @@ impl Extrapolation {
     /// `clamped` are the closest points of the grid; `offset` leads from them to the points.
     #[inline(always)]
     pub(crate) fn new(clamped: Vectors, offset: Vectors, solid: &Aabb) -> Self {
-        let gap = clamped.minus(clamped.clamped(solid));
-        let where_outside = |offset: f32x4, gap: f32x4| offset.abs().simd_gt(f32x4::ZERO) & gap;
         Self {
             offset,
-            gap: Vectors {
-                x: where_outside(offset.x, gap.x),
-                y: where_outside(offset.y, gap.y),
-                z: where_outside(offset.z, gap.z),
-            },
+            gap: clamped.minus(clamped.clamped(solid)),
         }
     }
 
@@ -53,6 +48,7 @@ impl Extrapolation {
     #[inline(always)]
     pub(crate) fn penetrations(&self, at_clamped: f32x4) -> f32x4 {
         let depth = at_clamped.fast_min(f32x4::ZERO);
+        // Along other axes w is zero.
         let further = self.offset.dot(self.offset.plus(self.gap).plus(self.gap));
         -(depth * depth + further).sqrt()
     }
@@ -87,9 +83,15 @@ impl Extrapolation {
     #[inline(always)]
     pub(crate) fn bounds(&self, at_clamped: f32x4, radii: f32x4) -> f32x4 {
         let depth = at_clamped.fast_min(f32x4::ZERO);
-        let from_solid = self.offset.plus(self.gap);
+        let where_outside = |offset: f32x4, gap: f32x4| offset.abs().simd_gt(f32x4::ZERO) & gap;
+        let gap = Vectors {
+            x: where_outside(self.offset.x, self.gap.x),
+            y: where_outside(self.offset.y, self.gap.y),
+            z: where_outside(self.offset.z, self.gap.z),
+        };
+        let from_solid = self.offset.plus(gap);
         let shortest = (depth * depth + from_solid.dot(from_solid)).sqrt() - radii;
-        let gap = self.gap.length();
+        let gap = gap.length();
         // In factors: the difference of squares would cancel.
         let square =
             (shortest - gap).fast_max(f32x4::ZERO) * (shortest + gap).fast_max(f32x4::ZERO);

@@ -169,28 +169,23 @@ impl Trilinear<'_> {
         let grid = map.grid().center_bounds();
         let is_in_grid = centers.depth_in(&grid).simd_ge(radii).all();
         let mut curvature_bound = f32x4::splat(f32::INFINITY);
+        let mut is_known = is_in_reach;
         if is_in_grid {
             let bound = at_center + discs.rise(gradients, gradients.length()) + excess;
-            curvature_bound = is_in_reach.select(bound, curvature_bound);
+            curvature_bound = is_known.select(bound, curvature_bound);
             // The other bounds are no smaller in this case.
             if curvature_bound.simd_le(at_center + radii).all() {
                 return curvature_bound;
             }
-        } else if is_in_reach.any() {
+        } else if is_known.any() {
             let linear = LinearBound {
                 value: at_center,
                 gradient: gradients,
                 excess,
             };
             let border = GridBorder::new(discs, sampled.clamped, &grid, &map.solid());
-            let is_known = is_in_reach & border.straddles_at_most_one_axis();
+            is_known &= border.straddles_at_most_one_axis();
             curvature_bound = is_known.select(border.bounds(discs, &linear), curvature_bound);
-            if curvature_bound
-                .simd_le(self.extrapolated(&sampled) + radii)
-                .all()
-            {
-                return curvature_bound;
-            }
         }
 
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
@@ -201,7 +196,8 @@ impl Trilinear<'_> {
         let lipschitz_bound =
             errors.upper_bound(at_center + change + probability * error, probability);
         let bound = curvature_bound.fast_min(lipschitz_bound);
-        if is_in_grid {
+        // The bounds that remain are for large pieces outside of the grid.
+        if is_in_grid || is_known.all() {
             return bound;
         }
         let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &map.solid());
