@@ -22,10 +22,10 @@ use crate::simd::Vectors;
 #[derive(Clone, Copy)]
 pub(crate) struct Extrapolation {
     /// From the grid to the points, in metres: w.
-    offset: Vectors,
+    pub(super) offset: Vectors,
     /// From the box of the solid to the closest points of the grid, in metres: g along the axes on
     /// which the points are outside.
-    gap: Vectors,
+    pub(super) gap: Vectors,
 }
 
 impl Extrapolation {
@@ -38,19 +38,16 @@ impl Extrapolation {
         }
     }
 
-    /// The lanes whose points are outside of the grid.
-    #[inline(always)]
-    pub(crate) fn is_outside(&self) -> f32x4 {
-        self.offset.dot(self.offset).simd_gt(f32x4::ZERO)
-    }
-
     /// The penetrations at the points, given those at the closest points of the grid.
     #[inline(always)]
     pub(crate) fn penetrations(&self, at_clamped: f32x4) -> f32x4 {
-        let depth = at_clamped.fast_min(f32x4::ZERO);
-        // Along other axes w is zero.
-        let further = self.offset.dot(self.offset.plus(self.gap).plus(self.gap));
-        -(depth * depth + further).sqrt()
+        extended(at_clamped, self.exterior_square())
+    }
+
+    /// The part w·(w + 2 g) of the squared distance; w is zero along axes within the grid.
+    #[inline(always)]
+    pub(crate) fn exterior_square(&self) -> f32x4 {
+        self.offset.dot(self.offset.plus(self.gap).plus(self.gap))
     }
 
     /// The gradients of [`penetrations`](Self::penetrations), per metre, given penetrations and
@@ -83,12 +80,8 @@ impl Extrapolation {
     #[inline(always)]
     pub(crate) fn bounds(&self, at_clamped: f32x4, radii: f32x4) -> f32x4 {
         let depth = at_clamped.fast_min(f32x4::ZERO);
-        let where_outside = |offset: f32x4, gap: f32x4| offset.abs().simd_gt(f32x4::ZERO) & gap;
-        let gap = Vectors {
-            x: where_outside(self.offset.x, self.gap.x),
-            y: where_outside(self.offset.y, self.gap.y),
-            z: where_outside(self.offset.z, self.gap.z),
-        };
+        let is_outside = Vectors::ZERO.is_less(self.offset.abs());
+        let gap = is_outside.select(self.gap, Vectors::ZERO);
         let from_solid = self.offset.plus(gap);
         let shortest = (depth * depth + from_solid.dot(from_solid)).sqrt() - radii;
         let gap = gap.length();
@@ -99,6 +92,14 @@ impl Extrapolation {
         let is_bounded = stays_outside | (at_clamped + radii).simd_le(f32x4::ZERO);
         is_bounded.select(-square.sqrt(), f32x4::splat(f32::INFINITY))
     }
+}
+
+/// The penetration beyond the grid, given that at the closest points of the grid and
+/// [`Extrapolation::exterior_square`].
+#[inline(always)]
+pub(crate) fn extended(at_clamped: f32x4, exterior_square: f32x4) -> f32x4 {
+    let depth = at_clamped.fast_min(f32x4::ZERO);
+    -(depth * depth + exterior_square).sqrt()
 }
 
 /// The penetration at a single `point`, given that at `clamped`, its closest point in the grid.

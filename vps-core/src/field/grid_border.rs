@@ -4,14 +4,8 @@ use wide::f32x4;
 
 use crate::aabb::Aabb;
 use crate::field::discs::Discs;
+use crate::field::extrapolation::{Extrapolation, extended};
 use crate::simd::Vectors;
-
-/// Zero vectors; as masks, no coordinate.
-const NONE: Vectors = Vectors {
-    x: f32x4::ZERO,
-    y: f32x4::ZERO,
-    z: f32x4::ZERO,
-};
 
 /// A linear upper bound on the interpolated penetration, up to an excess, around the point of the grid
 /// that is closest to the centre of a piece.
@@ -57,13 +51,16 @@ impl GridBorder {
         let (x, y, z) = (radii, radii, radii);
         let radii = Vectors { x, y, z };
         let straddling = from_border.abs().is_less(radii);
-        let outside = straddling.select(NONE, NONE.is_less(offset.abs()));
-        let nearest = outside.select(offset.abs().minus(radii), NONE);
-        let gap = clamped.minus(clamped.clamped(solid)).abs();
+        let outside = straddling.select(Vectors::ZERO, Vectors::ZERO.is_less(offset.abs()));
+        // The points of the balls that are closest to the grid, without signs.
+        let closest = Extrapolation {
+            offset: outside.select(offset.abs().minus(radii), Vectors::ZERO),
+            gap: clamped.minus(clamped.clamped(solid)).abs(),
+        };
         Self {
             offset,
             to_border: offset.minus(from_border),
-            exterior_square: nearest.dot(nearest.plus(gap).plus(gap)),
+            exterior_square: closest.exterior_square(),
             outside,
             straddling,
         }
@@ -80,7 +77,7 @@ impl GridBorder {
     /// Upper bounds on the sampled penetration in the pieces.
     #[inline(always)]
     pub(crate) fn bounds(&self, discs: &Discs, linear: &LinearBound) -> f32x4 {
-        let bounds = self.bounds_of_part(discs, linear, NONE);
+        let bounds = self.bounds_of_part(discs, linear, Vectors::ZERO);
         if self.straddling.any().any() {
             bounds.fast_max(self.bounds_of_part(discs, linear, self.straddling))
         } else {
@@ -92,9 +89,12 @@ impl GridBorder {
     #[inline(always)]
     fn bounds_of_part(&self, discs: &Discs, linear: &LinearBound, also_outside: Vectors) -> f32x4 {
         // From the closest point of the grid to the one that belongs to the centre in this case.
-        let within = self.outside.select(NONE, self.offset);
+        let within = self.outside.select(Vectors::ZERO, self.offset);
         let shift = also_outside.select(self.to_border, within);
-        let slope = also_outside.select(NONE, self.outside.select(NONE, linear.gradient));
+        let slope = also_outside.select(
+            Vectors::ZERO,
+            self.outside.select(Vectors::ZERO, linear.gradient),
+        );
         let at_grid = linear.value
             + linear.gradient.dot(shift)
             + discs.rise(slope, slope.length())
@@ -103,7 +103,6 @@ impl GridBorder {
         if !is_outside.any() {
             return at_grid;
         }
-        let depth = at_grid.fast_min(f32x4::ZERO);
-        is_outside.select(-(depth * depth + self.exterior_square).sqrt(), at_grid)
+        is_outside.select(extended(at_grid, self.exterior_square), at_grid)
     }
 }

@@ -68,6 +68,13 @@ pub(crate) struct Vectors {
 }
 
 impl Vectors {
+    /// Zero; as masks, no coordinate.
+    pub(crate) const ZERO: Self = Self {
+        x: f32x4::ZERO,
+        y: f32x4::ZERO,
+        z: f32x4::ZERO,
+    };
+
     #[inline(always)]
     pub(crate) fn splat(v: Vec3) -> Self {
         Self {

@@ -119,7 +119,7 @@ impl Trilinear<'_> {
     /// Penetrations at the points of a sample, within the grid and outside.
     #[inline(always)]
     fn extrapolated(&self, sampled: &Sampled) -> f32x4 {
-        let is_outside = sampled.offset.dot(sampled.offset).simd_gt(f32x4::ZERO);
+        let is_outside = sampled.is_outside();
         if is_outside.any() {
             let extrapolation =
                 Extrapolation::new(sampled.clamped, sampled.offset, &self.0.solid());
@@ -200,11 +200,11 @@ impl Trilinear<'_> {
         if is_in_grid || is_known.all() {
             return bound;
         }
-        let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &map.solid());
-        let is_outside = extrapolation.is_outside();
+        let is_outside = sampled.is_outside();
         if !is_outside.any() {
             return bound;
         }
+        let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &map.solid());
         // The interpolated value changes by at most the distance and these terms.
         let at_clamped = at_center + error + (MAX_SMOOTHING * s + accuracy.far_m);
         let exterior_bound = extrapolation.bounds(at_clamped, radii);
@@ -232,6 +232,14 @@ struct Sampled {
     clamped: Vectors,
     /// From the clamped points to the original ones, in metres.
     offset: Vectors,
+}
+
+impl Sampled {
+    /// The lanes whose points are outside of the grid.
+    #[inline(always)]
+    fn is_outside(&self) -> f32x4 {
+        self.offset.dot(self.offset).simd_gt(f32x4::ZERO)
+    }
 }
 
 impl DistanceField for Trilinear<'_> {
@@ -293,7 +301,7 @@ impl DistanceField for Trilinear<'_> {
         _normals: &Points,
     ) -> ([f32; LANES], Points) {
         let sampled = self.sampled((*points).into());
-        let is_outside = sampled.offset.dot(sampled.offset).simd_gt(f32x4::ZERO);
+        let is_outside = sampled.is_outside();
         if !is_outside.any() {
             return (sampled.values.to_array(), sampled.gradients.into());
         }
