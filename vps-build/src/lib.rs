@@ -48,8 +48,6 @@ mod solid;
 mod spatial;
 
 pub use cache::{AssetCache, BUILDER, CacheError, CachedAsset};
-#[doc(hidden)]
-pub use enclosing_ball as ball;
 pub use error::BuildError;
 pub use file::{FileError, read_asset, write_asset, write_atomically};
 pub use inspection::health::Health;
