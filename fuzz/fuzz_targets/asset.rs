@@ -27,7 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
     ] {
         let query = Query::new(&asset.tree, &trilinear, pose);
         query.for_each_contact(|_| ());
-        let _ = query.with_margin(0.1).wrench(Vec3::ZERO, Weight::Area);
+        let _ = query.with_prediction(0.1).wrench(Vec3::ZERO, Weight::Area);
         let _ = Query::new(&asset.tree, &local, pose).deepest();
     }
     let [x, y, z] = map.grid().dims().map(|n| n - 1);

@@ -402,7 +402,7 @@ trait RunQuery {
 
 impl<F: DistanceField> RunQuery for F {
     fn run(&self, name: &str, shell: &Shell<'_>, pose: Pose, margin: f32, work: Option<&Work>) {
-        let query = Query::new(shell.tree, self, pose).with_margin(margin);
+        let query = Query::new(shell.tree, self, pose).with_prediction(margin);
         macro_rules! ask {
             ($query:expr) => {{
                 let query = $query;
@@ -591,7 +591,7 @@ fn against_points(criterion: &mut Criterion, table: &mut Table, bunny: &Mesh, po
         let count = tree.point_count();
         let name = format!("points_{count}");
         let queries = || {
-            let pose = |p: &Pose| Query::new(&tree, &field, *p).with_margin(0.001);
+            let pose = |p: &Pose| Query::new(&tree, &field, *p).with_prediction(0.001);
             poses.iter().map(pose)
         };
         let sum = std::cell::Cell::new(0.0_f32);
@@ -661,7 +661,7 @@ fn against_triangles(criterion: &mut Criterion, table: &mut Table) {
     let queries = |torus: &Asset<'_>, run: &dyn Fn(&Query<'_, Trilinear<'_>>)| {
         let field = torus.voxelmap.trilinear();
         for pose in &poses {
-            run(&Query::new(&torus.tree, &field, *pose).with_margin(PREDICTION));
+            run(&Query::new(&torus.tree, &field, *pose).with_prediction(PREDICTION));
         }
     };
     let mut take_turns = |what: &str, run: &dyn Fn(&Query<'_, Trilinear<'_>>)| {

@@ -275,7 +275,7 @@ fn ask<F: DistanceField>(
                 0.5 * GROUND[1] as f32 - 0.001 - low.fold(f32::INFINITY, f32::min);
         }
         let margin = if is_inside { 0.0 } else { 0.02 };
-        let asked = Query::new(tree, field, pose).with_margin(margin);
+        let asked = Query::new(tree, field, pose).with_prediction(margin);
         for _ in 0..times {
             match work {
                 None => answer(query, &asked),

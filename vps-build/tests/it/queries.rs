@@ -61,7 +61,7 @@ fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
     query: &Query<'_, F>,
     field: &F,
     pose: Pose3,
-    margin: f32,
+    prediction: f32,
     flat: &[Contact],
 ) -> Result<(), TestCaseError> {
     let Some(deepest) = deepest(flat) else {
@@ -77,8 +77,8 @@ fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
     } else {
         inward
     };
-    for motion in [Some(0.0), Some(0.3 * margin), None] {
-        let listed = ContactManifold::<N>::spread(flat, along, margin, motion);
+    for motion in [Some(0.0), Some(0.3 * prediction), None] {
+        let listed = ContactManifold::<N>::spread(flat, along, prediction, motion);
         prop_assert_eq!(query.with_motion(motion).manifold::<N>(), listed);
     }
     Ok(())
@@ -89,10 +89,10 @@ fn check_query<F: DistanceField + ?Sized>(
     shell: &Asset<'_>,
     field: &F,
     pose: Pose3,
-    margin: f32,
+    prediction: f32,
 ) -> Result<(), TestCaseError> {
     let tree = &shell.tree;
-    let query = Query::new(tree, field, pose).with_margin(margin);
+    let query = Query::new(tree, field, pose).with_prediction(prediction);
     let flat = flat_contacts(&query);
     // The batch query of all points agrees with that of each point.
     let tolerance = 1e-5;
@@ -108,13 +108,13 @@ fn check_query<F: DistanceField + ?Sized>(
                 "{i}: {alone}, {c:?}"
             );
         } else {
-            prop_assert!(alone <= -margin + tolerance + field.error_bound());
+            prop_assert!(alone <= -prediction + tolerance + field.error_bound());
         }
     }
     prop_assert_eq!(&contacts(&query), &flat);
     prop_assert_eq!(query.touches(), !flat.is_empty());
     prop_assert_eq!(query.deepest(), deepest(&flat));
-    let all = flat_contacts(&query.with_margin(f32::INFINITY));
+    let all = flat_contacts(&query.with_prediction(f32::INFINITY));
     prop_assert_eq!(query.closest(), deepest(&all));
 
     for level in 1..=tree.level_count() {
@@ -140,7 +140,7 @@ fn check_query<F: DistanceField + ?Sized>(
         check_linear_wrench(&linear, shell, field, pose, &flat, center, weight)?;
     }
 
-    check_manifold::<_, 5>(&query, field, pose, margin, &flat)?;
+    check_manifold::<_, 5>(&query, field, pose, prediction, &flat)?;
     let manifold = query.manifold::<5>();
     let deep = query.deepest().map_or(u32::MAX, |c| c.point);
     for hint in [0, tree.point_count() as u32 / 2, deep] {
@@ -241,12 +241,12 @@ fn check_all_fields(
     shell: &Asset<'_>,
     map: &Voxelmap<'_>,
     pose: Pose3,
-    margin: f32,
+    prediction: f32,
 ) -> Result<(), TestCaseError> {
     let bounds = Ball::new(0.4).bounds();
     let function = FieldFn::new(|p: Vec3| 0.4 - p.length(), 1.0, bounds, 1e-6);
     // One is compiled as a whole, the others are called dynamically.
-    check_query(shell, &map.trilinear(), pose, margin)?;
+    check_query(shell, &map.trilinear(), pose, prediction)?;
     let others: [&dyn DistanceField; 9] = [
         &map.local(),
         &map.linear(),
@@ -259,7 +259,7 @@ fn check_all_fields(
         &function,
     ];
     for field in others {
-        check_query(shell, field, pose, margin)?;
+        check_query(shell, field, pose, prediction)?;
     }
     Ok(())
 }
@@ -278,8 +278,8 @@ proptest! {
     ) {
         let shell = asset(&shell, points, Encoding::Distances(None));
         let field = asset_of(&field, 10, encoding, density);
-        for (pose, margin) in poses {
-            check_all_fields(&shell, &field.voxelmap, pose, margin)?;
+        for (pose, prediction) in poses {
+            check_all_fields(&shell, &field.voxelmap, pose, prediction)?;
         }
     }
 
@@ -292,11 +292,11 @@ proptest! {
         let shell = asset(&shell, 5000, Encoding::Distances(None));
         let map = shell.voxelmap.trilinear();
         let cuboid = Cuboid::new(Vec3::splat(0.8));
-        for (pose, margin) in poses {
-            let query = Query::new(&shell.tree, &map, pose).with_margin(margin);
-            check_manifold::<_, 8>(&query, &map, pose, margin, &flat_contacts(&query))?;
-            let query = Query::new(&shell.tree, &cuboid, pose).with_margin(margin);
-            check_manifold::<_, 8>(&query, &cuboid, pose, margin, &flat_contacts(&query))?;
+        for (pose, prediction) in poses {
+            let query = Query::new(&shell.tree, &map, pose).with_prediction(prediction);
+            check_manifold::<_, 8>(&query, &map, pose, prediction, &flat_contacts(&query))?;
+            let query = Query::new(&shell.tree, &cuboid, pose).with_prediction(prediction);
+            check_manifold::<_, 8>(&query, &cuboid, pose, prediction, &flat_contacts(&query))?;
         }
     }
 
@@ -329,7 +329,7 @@ proptest! {
     /// The second body feels the reaction of what the first one feels.
     #[test]
     fn swapping_the_bodies_negates_the_force(
-        a in bumpy_mesh(), b in bumpy_mesh(), pose in pose(0.6), margin in 0.0..0.05_f32,
+        a in bumpy_mesh(), b in bumpy_mesh(), pose in pose(0.6), prediction in 0.0..0.05_f32,
     ) {
         let a = asset(&a, 300, Encoding::Distances(None));
         let b = asset(&b, 200, Encoding::Distances(None));
@@ -342,14 +342,14 @@ proptest! {
             };
             let ab = BodyPair::new(Body::of_asset(&a), Body::of_asset(&b), pose)
                 .with_shells(shells)
-                .with_margin(margin);
+                .with_prediction(prediction);
             let ba = BodyPair::new(Body::of_asset(&b), Body::of_asset(&a), back)
                 .with_shells(swapped)
-                .with_margin(margin);
+                .with_prediction(prediction);
             let (mut these, mut those) = (0, 0);
             ab.for_each_contact(|_| these += 1);
             ba.for_each_contact(|_| those += 1);
-            // Contacts just within the margin may be lost to rounding.
+            // Contacts just within the prediction distance may be lost to rounding.
             let near = i32::abs(these - those);
             prop_assert!(near <= 3);
             let on_a = ab.wrench_on_first(Vec3::ZERO, Weight::Area);
@@ -358,7 +358,7 @@ proptest! {
             let tolerance = 1e-5;
             prop_assert!((on_a.force + pose.rotation * on_b.force).length() < tolerance);
             prop_assert!((on_a.torque + pose.rotation * on_b.torque).length() < tolerance);
-            let depth = |c: Option<vps_core::PairContact>| c.map_or(-margin, |c| c.penetration);
+            let depth = |c: Option<vps_core::PairContact>| c.map_or(-prediction, |c| c.penetration);
             prop_assert!((depth(ab.deepest()) - depth(ba.deepest())).abs() < 1e-5);
             prop_assert_eq!(ab.touches(), ab.deepest().is_some());
         }
@@ -479,8 +479,8 @@ fn broken_poses_give_no_contact() {
 }
 
 fn check_broken(asset: &Asset<'_>, field: &dyn DistanceField, pose: Pose3) {
-    for margin in [0.0, 0.1, f32::INFINITY] {
-        let query = Query::new(&asset.tree, field, pose).with_margin(margin);
+    for prediction in [0.0, 0.1, f32::INFINITY] {
+        let query = Query::new(&asset.tree, field, pose).with_prediction(prediction);
         assert_eq!(query.deepest(), None);
         assert_eq!(query.closest(), None);
         assert!(!query.touches());

@@ -40,7 +40,7 @@ fn check() -> Result<(), i32> {
         wrench.force.z > 0.0 && wrench.force.truncate().length() < 0.2 * wrench.force.z,
         4,
     )?;
-    let manifold = query.with_margin(0.01).manifold::<4>();
+    let manifold = query.with_prediction(0.01).manifold::<4>();
     is(
         manifold.contacts().len() == 4 && manifold.contacts()[0] == deepest,
         5,

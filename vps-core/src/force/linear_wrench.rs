@@ -104,7 +104,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// their derivative by the pose; all in the shell frame, for stiffness one. Where the shell's
     /// normals equal those of the field, the force equals that of [`wrench`](Self::wrench).
     pub fn linear_wrench(&self, center: Vec3, weight: Weight) -> LinearWrench {
-        let penetration_threshold = (-self.margin).max(0.0);
+        let penetration_threshold = (-self.prediction).max(0.0);
         let none = [Vectors::splat(Vec3::ZERO); 3];
         let found = self.collect(LinearWrenchSum {
             sum: WrenchSum::new(self.tree, center, weight, penetration_threshold),

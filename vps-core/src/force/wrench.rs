@@ -46,9 +46,9 @@ impl Wrench {
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Penalty force and torque on the shell's body about `center`, all in the shell frame, for
-    /// stiffness one. Points within the margin but outside of the solid add nothing.
+    /// stiffness one. Points within the prediction distance but outside of the solid add nothing.
     pub fn wrench(&self, center: Vec3, weight: Weight) -> Wrench {
-        let penetration_threshold = (-self.margin).max(0.0);
+        let penetration_threshold = (-self.prediction).max(0.0);
         self.collect(WrenchSum::new(
             self.tree,
             center,

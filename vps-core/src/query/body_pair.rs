@@ -77,7 +77,7 @@ pub struct BodyPair<'q, A, B> {
     second: Body<'q, B>,
     second_to_first: Pose3,
     shells: Shells,
-    margin: f32,
+    prediction: f32,
 }
 
 impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
@@ -88,7 +88,7 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
             second,
             second_to_first,
             shells: Shells::default(),
-            margin: 0.0,
+            prediction: 0.0,
         }
     }
 
@@ -97,22 +97,22 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         Self { shells, ..self }
     }
 
-    /// Speculative distance: points up to `margin` metres outside of the other solid count as contacts
-    /// too.
-    pub fn with_margin(self, margin: f32) -> Self {
-        Self { margin, ..self }
+    /// Speculative distance (`prediction` of parry and rapier): points up to `prediction` metres outside
+    /// of the other solid count as contacts too; 0 by default.
+    pub fn with_prediction(self, prediction: f32) -> Self {
+        Self { prediction, ..self }
     }
 
     /// The query of the first body's shell in the field of the second.
     pub fn first_in_second(&self) -> Query<'_, B> {
         let pose = self.second_to_first.inverse();
-        Query::new(self.first.tree, &self.second.field, pose).with_margin(self.margin)
+        Query::new(self.first.tree, &self.second.field, pose).with_prediction(self.prediction)
     }
 
     /// The query of the second body's shell in the field of the first.
     pub fn second_in_first(&self) -> Query<'_, A> {
         Query::new(self.second.tree, &self.first.field, self.second_to_first)
-            .with_margin(self.margin)
+            .with_prediction(self.prediction)
     }
 
     /// Calls `visit` with every contact, those of the first shell before those of the second.
@@ -136,7 +136,7 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
 
     /// The deepest contact; of equally deep ones that of the first shell.
     pub fn deepest(&self) -> Option<PairContact> {
-        self.deepest_within(self.margin)
+        self.deepest_within(self.prediction)
     }
 
     /// The closest point if the bodies are apart, otherwise the deepest: see [`Query::closest`].
@@ -204,10 +204,10 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         may_be_within.then_some(first_is_smaller)
     }
 
-    fn deepest_within(&self, margin: f32) -> Option<PairContact> {
+    fn deepest_within(&self, prediction: f32) -> Option<PairContact> {
         let (first, second) = self.uses_shells();
-        let of_first = || self.first_in_second().with_margin(margin).deepest();
-        let of_second = || self.second_in_first().with_margin(margin).deepest();
+        let of_first = || self.first_in_second().with_prediction(prediction).deepest();
+        let of_second = || self.second_in_first().with_prediction(prediction).deepest();
         let found_first = first.then(of_first).flatten();
         let found_second = second.then(of_second).flatten();
         match (found_first, found_second) {

@@ -84,13 +84,13 @@ impl Found<'_> {
 
 /// Visits all contacts, in the order of the points.
 pub(crate) struct AllContacts<V> {
-    margin: f32,
+    prediction: f32,
     visit: V,
 }
 
 impl<V: FnMut(Contact)> AllContacts<V> {
-    pub(crate) fn new(margin: f32, visit: V) -> Self {
-        Self { margin, visit }
+    pub(crate) fn new(prediction: f32, visit: V) -> Self {
+        Self { prediction, visit }
     }
 }
 
@@ -100,7 +100,7 @@ impl<V: FnMut(Contact)> Collector for AllContacts<V> {
 
     #[inline(always)]
     fn penetration_threshold(&self) -> f32 {
-        -self.margin
+        -self.prediction
     }
 
     #[inline(always)]
@@ -112,7 +112,7 @@ impl<V: FnMut(Contact)> Collector for AllContacts<V> {
 
 /// Finds out whether there is a contact.
 pub(super) struct AnyContact {
-    pub(super) margin: f32,
+    pub(super) prediction: f32,
     pub(super) found: bool,
 }
 
@@ -121,7 +121,7 @@ impl Collector for AnyContact {
 
     #[inline(always)]
     fn penetration_threshold(&self) -> f32 {
-        -self.margin
+        -self.prediction
     }
 
     #[inline(always)]
@@ -133,15 +133,15 @@ impl Collector for AnyContact {
 
 /// Keeps the deepest contact, the first of equally deep ones.
 pub(crate) struct DeepestContact {
-    /// The penetration of the deepest contact so far, −margin before the first one; in metres.
+    /// The penetration of the deepest contact so far, −prediction before the first one; in metres.
     pub(crate) threshold: f32,
     pub(crate) found: Option<Contact>,
 }
 
 impl DeepestContact {
-    pub(crate) fn new(margin: f32) -> Self {
+    pub(crate) fn new(prediction: f32) -> Self {
         Self {
-            threshold: -margin,
+            threshold: -prediction,
             found: None,
         }
     }

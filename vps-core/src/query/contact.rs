@@ -14,7 +14,8 @@ pub struct Contact {
     /// Its unit inward normal n in the shell frame: the direction in which the shell's body
     /// is pushed (eq. 2).
     pub normal: Vec3,
-    /// Its penetration V in metres, positive inside; negative only within a query's margin.
+    /// Its penetration V in metres, positive inside; negative only within the prediction
+    /// distance of a query.
     pub penetration: f32,
 }
 

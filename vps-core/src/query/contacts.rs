@@ -13,7 +13,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Algorithm 1, with two differences that do not change the result: the tree is traversed depth
     /// first, which needs no queue, and a parent point is tested once, with its leaf.
     pub fn for_each_contact(&self, visit: impl FnMut(Contact)) {
-        self.collect(AllContacts::new(self.margin, visit));
+        self.collect(AllContacts::new(self.prediction, visit));
     }
 
     /// Calls `visit` with every contact, testing every point (MPT99): the reference for the tree.
@@ -21,7 +21,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         if !self.has_finite_pose {
             return;
         }
-        let mut all = AllContacts::new(self.margin, visit);
+        let mut all = AllContacts::new(self.prediction, visit);
         let range = (0, self.tree.point_count() as u32);
         multiversion(
             #[inline(always)]
@@ -32,7 +32,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Whether there is any contact; stops at the first.
     pub fn touches(&self) -> bool {
         let mut any = AnyContact {
-            margin: self.margin,
+            prediction: self.prediction,
             found: false,
         };
         self.collect_from_hint(&mut any);
@@ -43,7 +43,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     ///
     /// Branch and bound: clusters that cannot contain a deeper point are pruned.
     pub fn deepest(&self) -> Option<Contact> {
-        let mut deepest = DeepestContact::new(self.margin);
+        let mut deepest = DeepestContact::new(self.prediction);
         self.collect_from_hint(&mut deepest);
         deepest.found
     }
@@ -56,12 +56,12 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     where
         W: Copy,
     {
-        self.with_margin(f32::INFINITY).deepest()
+        self.with_prediction(f32::INFINITY).deepest()
     }
 
     /// The contact of a single point, if it is one.
     pub(crate) fn test_point(&self, point: u32) -> Option<Contact> {
-        let mut deepest = DeepestContact::new(self.margin);
+        let mut deepest = DeepestContact::new(self.prediction);
         self.test_points((point, point + 1), &mut deepest);
         deepest.found
     }

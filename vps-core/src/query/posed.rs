@@ -9,7 +9,8 @@ use crate::simd::Vectors;
 
 /// A pointshell posed in a distance field (sections 2.2 to 2.4).
 ///
-/// A point is in contact when its penetration is at least 0, or with a margin at least −margin.
+/// A point is in contact when its penetration is at least 0, or at least −prediction with a
+/// [`prediction`](Self::with_prediction).
 /// Every query gives the same result as a test of all points
 /// ([`for_each_contact_flat`](Self::for_each_contact_flat)), but prunes clusters that cannot change
 /// it. With a pose that is not finite there are no contacts.
@@ -20,7 +21,7 @@ pub struct Query<'q, F: ?Sized, W = ()> {
     pub(crate) rotation: Mat3,
     pub(crate) translation: Vec3,
     pub(crate) has_finite_pose: bool,
-    pub(crate) margin: f32,
+    pub(crate) prediction: f32,
     pub(crate) motion: Option<f32>,
     /// Index of the point that is tested first.
     pub(crate) hint: Option<u32>,
@@ -48,7 +49,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             rotation: Mat3::from_quat(shell_to_field.rotation),
             translation,
             has_finite_pose: shell_to_field.is_finite(),
-            margin: 0.0,
+            prediction: 0.0,
             motion: Some(0.0),
             hint: None,
             rounding_slack: 16.0 * f32::EPSILON * reach,
@@ -64,7 +65,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             rotation: self.rotation,
             translation: self.translation,
             has_finite_pose: self.has_finite_pose,
-            margin: self.margin,
+            prediction: self.prediction,
             motion: self.motion,
             hint: self.hint,
             rounding_slack: self.rounding_slack,
@@ -74,14 +75,15 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
 }
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
-    /// Speculative distance: points up to `margin` metres outside of the solid count as contacts too.
-    pub fn with_margin(self, margin: f32) -> Self {
-        Self { margin, ..self }
+    /// Speculative distance (`prediction` of parry and rapier): points up to `prediction` metres outside
+    /// of the solid count as contacts too; 0 by default.
+    pub fn with_prediction(self, prediction: f32) -> Self {
+        Self { prediction, ..self }
     }
 
     /// Tells [`manifold`](Self::manifold) how far the shell has moved, towards the solid or away
     /// from it, since the previous query, in metres; 0 by default. `None` if it was further away
-    /// than the margin: the shell is then assumed to move on by the separation of its deepest
+    /// than the prediction: the shell is then assumed to move on by the separation of its deepest
     /// point.
     pub fn with_motion(self, motion: Option<f32>) -> Self {
         Self { motion, ..self }

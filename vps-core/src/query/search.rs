@@ -209,7 +209,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         self.has_finite_pose
             && multiversion(
                 #[inline(always)]
-                || self.penetration_bounds(top).1[0] >= -self.margin,
+                || self.penetration_bounds(top).1[0] >= -self.prediction,
             )
     }
 

@@ -18,7 +18,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     pub fn for_each_segment(&self, level: u32, mut visit: impl FnMut(u32, Contact)) {
         let level = level.clamp(1, self.tree.level_count());
         let start = self.tree.level_starts()[level as usize - 1];
-        let mut all = AllContacts::new(self.margin, |_| ());
+        let mut all = AllContacts::new(self.prediction, |_| ());
         multiversion(
             #[inline(always)]
             || {
@@ -28,7 +28,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                     &mut all,
                     #[inline(always)]
                     |segment, _, _| {
-                        let mut deepest = DeepestContact::new(self.margin);
+                        let mut deepest = DeepestContact::new(self.prediction);
                         self.search((level, segment), &mut deepest);
                         if let Some(deepest) = deepest.found {
                             visit(segment - start, deepest);

@@ -17,7 +17,7 @@ pub struct Estimate {
     /// The deepest of the tested points.
     pub deepest: Option<Contact>,
     /// Upper bound on the penetration of any contact, in metres. Once the query is complete it is that
-    /// of the deepest contact, or −margin if there is none.
+    /// of the deepest contact, or −prediction if there is none.
     pub penetration_bound: f32,
     /// Penalty force and torque with [`Weight::Area`], estimated from the last complete level: all
     /// of a cluster is taken to be as deep as its parent point.
@@ -49,13 +49,13 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         };
         let mut tested = 0;
         let mut all = WrenchAndDeepest {
-            sum: WrenchSum::new(self.tree, center, Weight::Area, -self.margin),
-            deepest: DeepestContact::new(self.margin),
+            sum: WrenchSum::new(self.tree, center, Weight::Area, -self.prediction),
+            deepest: DeepestContact::new(self.prediction),
         };
         let clusters = self.tree.clusters();
         for level in 1..=self.tree.level_count() {
             let mut level_estimate = LevelEstimate::default();
-            let mut bound = -self.margin;
+            let mut bound = -self.prediction;
             let mut stopped = false;
             let mut test = |cluster: u32, cluster_bound: f32, _: &mut _| {
                 if !keep_going(tested) {
@@ -104,7 +104,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         );
         estimate.deepest = all.deepest.found;
         if !stopped {
-            let deepest = estimate.deepest.map_or(-self.margin, |d| d.penetration);
+            let deepest = estimate.deepest.map_or(-self.prediction, |d| d.penetration);
             estimate.penetration_bound = deepest;
             estimate.wrench = all.sum.wrench();
             estimate.is_complete = true;

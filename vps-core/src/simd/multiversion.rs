@@ -158,7 +158,7 @@ mod tests {
     fn results(field: &impl DistanceField, tree: &PointSphereTree<'_>, pose: Pose3) -> String {
         let work = Work::default();
         let query = Query::new(tree, field, pose)
-            .with_margin(0.05)
+            .with_prediction(0.05)
             .counting(&work);
         let (mut all, mut segments) = (Vec::new(), Vec::new());
         query.for_each_contact(|c| all.push(c));

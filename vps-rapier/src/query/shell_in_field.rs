@@ -197,7 +197,7 @@ impl<'s> ShellInField<'s> {
         };
         loop {
             let found = with_field!(self, &pose, within, field => {
-                Query::new(self.tree, field, pose).with_margin(within).deepest()
+                Query::new(self.tree, field, pose).with_prediction(within).deepest()
             });
             if let Some(contact) = found {
                 return Some(self.pair_contact(&pose, &contact, within));
@@ -299,7 +299,7 @@ impl<'s> ShellInField<'s> {
             }
         };
         with_field!(self, &pose, prediction, field => {
-            Query::new(self.tree, field, pose).with_margin(prediction).for_each_contact(visit);
+            Query::new(self.tree, field, pose).with_prediction(prediction).for_each_contact(visit);
         });
         deepest
     }
@@ -319,7 +319,7 @@ impl<'s> ShellInField<'s> {
         let hint = previous.first().and_then(|&ids| self.shell_point(ids));
         let manifold: ContactManifold<N> = with_field!(self, &pose, prediction, field => {
             let query = Query::new(self.tree, field, pose)
-                .with_margin(prediction)
+                .with_prediction(prediction)
                 .with_motion(motion);
             hint.map_or(query, |point| query.with_hint(point)).manifold()
         });
@@ -366,7 +366,7 @@ impl<'s> ShellInField<'s> {
             found.push(contact);
         };
         with_field!(self, &pose, prediction, field => {
-            let query = Query::new(self.tree, field, pose).with_margin(prediction);
+            let query = Query::new(self.tree, field, pose).with_prediction(prediction);
             query.for_each_segment(level, visit);
         });
     }

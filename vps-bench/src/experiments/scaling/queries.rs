@@ -209,7 +209,7 @@ impl QueryKind {
                 black_box(query.deepest());
             }
             Self::Manifold => {
-                black_box(query.with_margin(prediction).manifold::<4>());
+                black_box(query.with_prediction(prediction).manifold::<4>());
             }
             Self::Wrench => {
                 black_box(query.wrench(Vec3::ZERO, Weight::Area));

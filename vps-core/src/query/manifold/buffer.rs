@@ -54,8 +54,8 @@ impl CandidateBuffer {
         };
         Self {
             weighting,
-            threshold: -weighting.margin,
-            deepest: DeepestContact::new(weighting.margin),
+            threshold: -weighting.prediction,
+            deepest: DeepestContact::new(weighting.prediction),
             candidates: [empty; CAPACITY],
             len: 0,
             is_full: false,

@@ -18,12 +18,13 @@ use crate::query::contact::Contact;
 /// those that give the manifold the largest area (section 3.2).
 ///
 /// The area a contact adds is weighted by its depth: the further outside of the solid it lies than the
-/// deepest one, the less it counts, with half weight at a hundredth of the margin. The points on which
-/// a body rests thus come before points that are further apart but above the ground; without them the
-/// body would never come to rest. While a body moves, other points touch the ground in the next step:
-/// the distance of half weight is then its motion since the previous query
-/// ([`Query::with_motion`](crate::Query::with_motion)). Contacts with less than half the weight of the
-/// deepest one only fill up the manifold to four contacts, since the body may tip onto them next.
+/// deepest one, the less it counts, with half weight at a hundredth of the prediction distance. The
+/// points on which a body rests thus come before points that are further apart but above the
+/// ground; without them the body would never come to rest. While a body moves, other points touch
+/// the ground in the next step: the distance of half weight is then its motion since the previous
+/// query ([`Query::with_motion`](crate::Query::with_motion)). Contacts with less than half the
+/// weight of the deepest one only fill up the manifold to four contacts, since the body may tip
+/// onto them next.
 ///
 /// More than four contacts are selected only where the field is curved, that is where the
 /// penetrations of contacts of sufficient weight differ from those in a half-space: four contacts
@@ -48,13 +49,13 @@ impl<const N: usize> ContactManifold<N> {
         len: 0,
     };
 
-    /// Reduces `contacts`, found by a query with `margin` metres and a `motion`. The area is that
+    /// Reduces `contacts`, found by a query with `prediction` metres and a `motion`. The area is that
     /// of the polygon of the selected points, seen `along` a unit vector in the shell frame: the
     /// direction in which penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
-    pub fn spread(contacts: &[Contact], along: Vec3, margin: f32, motion: Option<f32>) -> Self {
-        let weighting = DepthWeighting { margin, motion };
+    pub fn spread(contacts: &[Contact], along: Vec3, prediction: f32, motion: Option<f32>) -> Self {
+        let weighting = DepthWeighting { prediction, motion };
         let deepest = best(contacts, |c| Some(c.penetration));
         Self::reduce(
             deepest,
@@ -84,7 +85,7 @@ impl<const N: usize> ContactManifold<N> {
         while manifold.len < max_contacts {
             let mut selected = source.best(&polygon);
             if selected.is_none() && manifold.len < SUPPORT_CONTACTS && !is_filled_up {
-                (polygon.penetration_threshold, is_filled_up) = (-weighting.margin, true);
+                (polygon.penetration_threshold, is_filled_up) = (-weighting.prediction, true);
                 selected = source.best(&polygon);
             }
             let Some(next) = selected else {

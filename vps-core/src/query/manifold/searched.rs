@@ -34,7 +34,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             return ContactManifold::EMPTY;
         }
         let weighting = DepthWeighting {
-            margin: self.margin,
+            prediction: self.prediction,
             motion: self.motion,
         };
         let mut buffer = CandidateBuffer::new(weighting);

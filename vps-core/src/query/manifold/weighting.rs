@@ -3,7 +3,7 @@
 use wide::f32x4;
 
 /// Distance outside of the deepest contact at which a contact has half weight while the shell
-/// rests, as a fraction of the margin.
+/// rests, as a fraction of the prediction distance.
 const RESTING_SCALE: f32 = 0.01;
 
 /// Weight, relative to the deepest contact, below which contacts only fill up the manifold.
@@ -27,14 +27,14 @@ pub(super) const MIN_NORMAL_WEIGHT: f32 = 0.25;
 /// The weights of contacts outside of the solid.
 #[derive(Clone, Copy)]
 pub(super) struct DepthWeighting {
-    pub(super) margin: f32,
+    pub(super) prediction: f32,
     pub(super) motion: Option<f32>,
 }
 
 impl DepthWeighting {
     /// Distance in metres within which a contact counts as resting.
     pub(super) fn resting_distance(&self) -> f32 {
-        (self.margin * RESTING_SCALE).max(f32::MIN_POSITIVE)
+        (self.prediction * RESTING_SCALE).max(f32::MIN_POSITIVE)
     }
 
     /// Distance in metres, measured from the deepest contact outwards, at which the weight is one
@@ -42,10 +42,10 @@ impl DepthWeighting {
     pub(super) fn half_weight_distance(&self, deepest: f32) -> f32 {
         let next = match self.motion {
             Some(motion) => motion,
-            // The shell came from beyond the margin.
+            // The shell came from beyond the prediction.
             None => distance_outside(deepest),
         };
-        next.min(self.margin).max(self.resting_distance())
+        next.min(self.prediction).max(self.resting_distance())
     }
 
     /// The penetration in metres from which on contacts have at least the weight `part`, relative
@@ -54,7 +54,7 @@ impl DepthWeighting {
         let half_weight_distance = self.half_weight_distance(deepest);
         let further =
             f32x4::splat(half_weight_distance * half_weight_distance * (1.0 / part - 1.0)).sqrt();
-        -(distance_outside(deepest) + further.to_array()[0]).min(self.margin)
+        -(distance_outside(deepest) + further.to_array()[0]).min(self.prediction)
     }
 }
 
