@@ -104,8 +104,8 @@ pub use map::SurfaceMesh;
 pub use map::store::{self, Store, Values};
 pub use map::{Accuracy, BEND_STEPS, Grid, GridError, UNKNOWN_BEND, Voxelmap, VoxelmapError};
 pub use query::{
-    Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact, Query,
-    Shells, Side, Sweep, Work,
+    Approach, Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact,
+    Query, Shells, Side, Sweep, Work,
 };
 pub use shell::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
 pub use simd::{LANES, Points};

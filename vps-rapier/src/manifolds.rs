@@ -1,7 +1,7 @@
 //! From the contacts of a pair to manifolds of parry, which an engine recognises in the next step.
 
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
-use vps_core::{Pose3, Vec3};
+use vps_core::{Approach, Pose3, Vec3};
 
 use crate::precision::{core_real, core_vector, real, vector};
 use crate::query::pair::Pair;
@@ -21,8 +21,10 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     let mut old = std::mem::take(manifolds);
     let previous = old.iter().flat_map(|m| &m.points);
     let previous: Vec<_> = previous.map(|c| [c.fid1, c.fid2]).collect();
-    let motion = old.first().and_then(|first| motion(first, pos12));
-    let contacts = contacts(pair, pos12, prediction, motion, kind, &previous);
+    let approach = old
+        .first()
+        .map_or(Approach::Unknown, |first| approach(first, pos12));
+    let contacts = contacts(pair, pos12, prediction, approach, kind, &previous);
     let keys: Vec<_> = contacts.iter().map(ContactKey::of_contact).collect();
     let matched = match_previous(&keys, &old);
     for (contact, data) in contacts.iter().zip(matched) {
@@ -47,17 +49,19 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
 }
 
 /// How far the shapes have moved towards each other or apart since the contacts of a manifold were
-/// found, in metres: the mean of its contacts. `None` without contacts: the shapes were further apart
-/// than contacts are searched for.
-fn motion<M, C>(manifold: &ContactManifold<M, C>, pos12: &Pose3) -> Option<f32> {
+/// found: the mean of its contacts. Unknown without contacts: the shapes were further apart than
+/// contacts are searched for.
+fn approach<M, C>(manifold: &ContactManifold<M, C>, pos12: &Pose3) -> Approach {
     let normal = core_vector(manifold.local_n1);
     let moved = |contact: &TrackedContact<C>| {
         let on_second = pos12.transform_point(core_vector(contact.local_p2));
         (on_second - core_vector(contact.local_p1)).dot(normal) - core_real(contact.dist)
     };
     let sum: f32 = manifold.points.iter().map(moved).sum();
-    let count = manifold.points.len();
-    (count > 0).then(|| (sum / count as f32).abs())
+    match manifold.points.len() {
+        0 => Approach::Unknown,
+        count => Approach::Moved((sum / count as f32).abs()),
+    }
 }
 
 fn has_normal<M, C>(manifold: &ContactManifold<M, C>, normal: Vec3) -> bool {

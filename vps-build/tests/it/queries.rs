@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use vps_build::{Encoding, Mesh};
 use vps_core::{
-    Asset, Ball, Body, BodyPair, Capsule, Contact, ContactManifold, Cuboid, Cylinder,
+    Approach, Asset, Ball, Body, BodyPair, Capsule, Contact, ContactManifold, Cuboid, Cylinder,
     DistanceField, FieldFn, HalfSpace, LinearWrench, Mat3, Points, Pose3, Query, Shells, Sweep,
     Vec3, Voxelmap, Weight, Work, Wrench,
 };
@@ -77,9 +77,14 @@ fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
     } else {
         inward
     };
-    for motion in [Some(0.0), Some(0.3 * prediction), None] {
-        let listed = ContactManifold::<N>::spread(flat, along, prediction, motion);
-        prop_assert_eq!(query.with_motion(motion).manifold::<N>(), listed);
+    let approaches = [
+        Approach::RESTING,
+        Approach::Moved(0.3 * prediction),
+        Approach::Unknown,
+    ];
+    for approach in approaches {
+        let listed = ContactManifold::<N>::spread(flat, along, prediction, approach);
+        prop_assert_eq!(query.with_approach(approach).manifold::<N>(), listed);
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Queries: a pointshell posed in a distance field.
 
+pub(crate) mod approach;
 mod body_pair;
 pub(crate) mod collectors;
 pub(crate) mod contact;
@@ -12,6 +13,7 @@ mod sweep;
 mod time_critical;
 pub(crate) mod work;
 
+pub use self::approach::Approach;
 pub use self::body_pair::{Body, BodyPair, PairContact, Shells, Side};
 pub use self::contact::Contact;
 pub use self::manifold::ContactManifold;

@@ -3,6 +3,7 @@
 use glamx::{Mat3, Pose3, Vec3};
 
 use crate::field::DistanceField;
+use crate::query::approach::Approach;
 use crate::query::work::{CountWork, Work};
 use crate::shell::PointSphereTree;
 use crate::simd::Vectors;
@@ -22,7 +23,7 @@ pub struct Query<'q, F: ?Sized, W = ()> {
     pub(crate) translation: Vec3,
     pub(crate) has_finite_pose: bool,
     pub(crate) prediction: f32,
-    pub(crate) motion: Option<f32>,
+    pub(crate) approach: Approach,
     /// Index of the point that is tested first.
     pub(crate) hint: Option<u32>,
     /// Padding of balls in metres: rounding moves a ball and its points differently.
@@ -50,7 +51,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             translation,
             has_finite_pose: shell_to_field.is_finite(),
             prediction: 0.0,
-            motion: Some(0.0),
+            approach: Approach::RESTING,
             hint: None,
             rounding_slack: 16.0 * f32::EPSILON * reach,
             work: (),
@@ -66,7 +67,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             translation: self.translation,
             has_finite_pose: self.has_finite_pose,
             prediction: self.prediction,
-            motion: self.motion,
+            approach: self.approach,
             hint: self.hint,
             rounding_slack: self.rounding_slack,
             work,
@@ -81,12 +82,10 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         Self { prediction, ..self }
     }
 
-    /// Tells [`manifold`](Self::manifold) how far the shell has moved, towards the solid or away
-    /// from it, since the previous query, in metres; 0 by default. `None` if it was further away
-    /// than the prediction: the shell is then assumed to move on by the separation of its deepest
-    /// point.
-    pub fn with_motion(self, motion: Option<f32>) -> Self {
-        Self { motion, ..self }
+    /// Tells [`manifold`](Self::manifold) how the shell came to its pose, so that contacts of the
+    /// next step count; [`Approach::RESTING`] by default.
+    pub fn with_approach(self, approach: Approach) -> Self {
+        Self { approach, ..self }
     }
 
     /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and [`manifold`](Self::manifold)

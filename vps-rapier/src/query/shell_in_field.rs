@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use rapier3d::parry::shape::{FeatureId, PackedFeatureId, Shape, TypedShape};
 use vps_core::{
-    Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
+    Approach, Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
     PointSphereTree, Pose3, Query, Trilinear, Vec3, Weight,
 };
 
@@ -305,13 +305,13 @@ impl<'s> ShellInField<'s> {
     }
 
     /// Adds the deepest contact, then those that spread over the largest area, `N` at the most. The
-    /// search is faster if the first of the `previous` contacts is still deep. `motion` is that of
-    /// [`Query::with_motion`].
+    /// search is faster if the first of the `previous` contacts is still deep. `approach` is that
+    /// of [`Query::with_approach`].
     pub(crate) fn manifold<const N: usize>(
         &self,
         pos12: &Pose3,
         prediction: f32,
-        motion: Option<f32>,
+        approach: Approach,
         previous: &[[PackedFeatureId; 2]],
         found: &mut Vec<PairContact>,
     ) {
@@ -320,7 +320,7 @@ impl<'s> ShellInField<'s> {
         let manifold: ContactManifold<N> = with_field!(self, &pose, prediction, field => {
             let query = Query::new(self.tree, field, pose)
                 .with_prediction(prediction)
-                .with_motion(motion);
+                .with_approach(approach);
             hint.map_or(query, |point| query.with_hint(point)).manifold()
         });
         let contacts = manifold.contacts().iter();

@@ -21,7 +21,7 @@ mod select;
 pub(crate) use normals::is_same_normal;
 
 use rapier3d::parry::shape::PackedFeatureId;
-use vps_core::Pose3;
+use vps_core::{Approach, Pose3};
 
 use self::deep_penetration::recover_deep_penetration;
 use self::normals::resolve_normals;
@@ -45,13 +45,12 @@ pub enum Manifolds {
 }
 
 /// The contacts up to `prediction` metres away that an engine gets. `previous` are the ids of the
-/// contacts of the step before, and `motion` is how far the shapes have moved since, as in
-/// [`vps_core::Query::with_motion`].
+/// contacts of the step before, and `approach` is how far the shapes have moved since.
 pub(crate) fn contacts(
     pair: &Pair<'_>,
     pos12: &Pose3,
     prediction: f32,
-    motion: Option<f32>,
+    approach: Approach,
     manifolds: Manifolds,
     previous: &[[PackedFeatureId; 2]],
 ) -> Vec<PairContact> {
@@ -59,7 +58,7 @@ pub(crate) fn contacts(
     for shell in pair.shells(pos12) {
         match manifolds {
             Manifolds::Spread => {
-                shell.manifold::<MAX_CONTACTS>(pos12, prediction, motion, previous, &mut found);
+                shell.manifold::<MAX_CONTACTS>(pos12, prediction, approach, previous, &mut found);
             }
             Manifolds::Segments(level) => shell.segments(pos12, prediction, level, &mut found),
         }
@@ -73,7 +72,7 @@ pub(crate) fn contacts(
         Manifolds::Spread => {
             let mut persistent = re_evaluate(pair, pos12, previous, &found);
             if has_edges || pair.secondary(pos12).is_some() {
-                reduce::<MAX_CONTACTS>(&mut found, prediction, motion);
+                reduce::<MAX_CONTACTS>(&mut found, prediction, approach);
             }
             for contacts in persistent.iter_mut().chain([&mut found]) {
                 resolve_normals(contacts, pos12);
@@ -89,7 +88,7 @@ pub(crate) fn contacts(
         }
         Manifolds::Segments(_) if has_edges => {
             let mut by_edges = found.split_off(by_shells);
-            reduce::<MAX_CONTACTS>(&mut by_edges, prediction, motion);
+            reduce::<MAX_CONTACTS>(&mut by_edges, prediction, approach);
             found.extend(by_edges);
         }
         Manifolds::Segments(_) => {}

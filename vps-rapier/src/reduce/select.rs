@@ -1,6 +1,6 @@
 //! The choice of a few contacts.
 
-use vps_core::{Contact, ContactManifold, Vec3};
+use vps_core::{Approach, Contact, ContactManifold, Vec3};
 
 use super::normals::is_same_normal;
 use super::parameters::MAX_CONTACTS_PER_NORMAL;
@@ -8,11 +8,11 @@ use crate::query::pair_contact::PairContact;
 
 /// Keeps at most `N` contacts: the deepest first, then those that spread over the largest area, seen
 /// along the normal of the deepest (section 3.2). `prediction` is the distance up to which they were
-/// searched for, and `motion` that of [`vps_core::Query::with_motion`].
+/// searched for, and `approach` that of [`vps_core::Query::with_approach`].
 pub(super) fn reduce<const N: usize>(
     contacts: &mut Vec<PairContact>,
     prediction: f32,
-    motion: Option<f32>,
+    approach: Approach,
 ) {
     if contacts.len() <= 1 {
         return;
@@ -31,7 +31,7 @@ pub(super) fn reduce<const N: usize>(
     let Some(deepest) = numbered.iter().copied().max_by(by_depth) else {
         return;
     };
-    let selected = ContactManifold::<N>::spread(&numbered, deepest.normal, prediction, motion);
+    let selected = ContactManifold::<N>::spread(&numbered, deepest.normal, prediction, approach);
     let selected = selected.contacts().iter();
     *contacts = selected.map(|c| contacts[c.point as usize]).collect();
 }

@@ -12,6 +12,7 @@ use glamx::Vec3;
 use self::polygon::Polygon;
 use self::source::{CandidateSource, ListedCandidates, best};
 use self::weighting::{DepthWeighting, SUPPORT_CONTACTS};
+use crate::query::approach::Approach;
 use crate::query::contact::Contact;
 
 /// At most `N` contacts that represent a contact set (contact reduction): the deepest one first, then
@@ -22,7 +23,7 @@ use crate::query::contact::Contact;
 /// points on which a body rests thus come before points that are further apart but above the
 /// ground; without them the body would never come to rest. While a body moves, other points touch
 /// the ground in the next step: the distance of half weight is then its motion since the previous
-/// query ([`Query::with_motion`](crate::Query::with_motion)). Contacts with less than half the
+/// query ([`Query::with_approach`](crate::Query::with_approach)). Contacts with less than half the
 /// weight of the deepest one only fill up the manifold to four contacts, since the body may tip
 /// onto them next.
 ///
@@ -49,13 +50,16 @@ impl<const N: usize> ContactManifold<N> {
         len: 0,
     };
 
-    /// Reduces `contacts`, found by a query with `prediction` metres and a `motion`. The area is that
+    /// Reduces `contacts`, found by a query with a `prediction` in metres and an `approach`. The area is that
     /// of the polygon of the selected points, seen `along` a unit vector in the shell frame: the
     /// direction in which penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
-    pub fn spread(contacts: &[Contact], along: Vec3, prediction: f32, motion: Option<f32>) -> Self {
-        let weighting = DepthWeighting { prediction, motion };
+    pub fn spread(contacts: &[Contact], along: Vec3, prediction: f32, approach: Approach) -> Self {
+        let weighting = DepthWeighting {
+            prediction,
+            approach,
+        };
         let deepest = best(contacts, |c| Some(c.penetration));
         Self::reduce(
             deepest,
@@ -129,7 +133,7 @@ mod tests {
     }
 
     fn picked<const N: usize>(contacts: &[Contact]) -> Vec<u32> {
-        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1, Some(0.0));
+        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1, Approach::RESTING);
         manifold.contacts().iter().map(|c| c.point).collect()
     }
 
@@ -176,20 +180,20 @@ mod tests {
             contact(1, 4.0, 0.0, 0.0),
             contact(2, 8.0, 0.0, -0.01),
         ];
-        let second = |contacts: &[Contact], motion| {
-            let manifold = ContactManifold::<2>::spread(contacts, Vec3::Y, 0.1, motion);
+        let second = |contacts: &[Contact], approach| {
+            let manifold = ContactManifold::<2>::spread(contacts, Vec3::Y, 0.1, approach);
             manifold.contacts()[1].point
         };
         assert_eq!(
-            [0.0, 0.01, 0.1].map(|m| second(&contacts, Some(m))),
+            [0.0, 0.01, 0.1].map(|m| second(&contacts, Approach::Moved(m))),
             [1, 1, 2]
         );
         // A shell that touches already may have been placed there.
-        assert_eq!(second(&contacts, None), 1);
+        assert_eq!(second(&contacts, Approach::Unknown), 1);
         for contact in &mut contacts {
             contact.penetration -= 0.04;
         }
-        assert_eq!(second(&contacts, None), 2);
+        assert_eq!(second(&contacts, Approach::Unknown), 2);
     }
 
     #[test]

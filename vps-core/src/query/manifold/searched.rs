@@ -35,7 +35,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         }
         let weighting = DepthWeighting {
             prediction: self.prediction,
-            motion: self.motion,
+            approach: self.approach,
         };
         let mut buffer = CandidateBuffer::new(weighting);
         self.collect_from_hint(&mut buffer);

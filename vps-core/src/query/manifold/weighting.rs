@@ -2,6 +2,8 @@
 
 use wide::f32x4;
 
+use crate::query::approach::Approach;
+
 /// Distance outside of the deepest contact at which a contact has half weight while the shell
 /// rests, as a fraction of the prediction distance.
 const RESTING_SCALE: f32 = 0.01;
@@ -28,7 +30,7 @@ pub(super) const MIN_NORMAL_WEIGHT: f32 = 0.25;
 #[derive(Clone, Copy)]
 pub(super) struct DepthWeighting {
     pub(super) prediction: f32,
-    pub(super) motion: Option<f32>,
+    pub(super) approach: Approach,
 }
 
 impl DepthWeighting {
@@ -40,10 +42,9 @@ impl DepthWeighting {
     /// Distance in metres, measured from the deepest contact outwards, at which the weight is one
     /// half.
     pub(super) fn half_weight_distance(&self, deepest: f32) -> f32 {
-        let next = match self.motion {
-            Some(motion) => motion,
-            // The shell came from beyond the prediction.
-            None => distance_outside(deepest),
+        let next = match self.approach {
+            Approach::Moved(distance) => distance,
+            Approach::Unknown => distance_outside(deepest),
         };
         next.min(self.prediction).max(self.resting_distance())
     }
