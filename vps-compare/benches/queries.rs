@@ -77,7 +77,7 @@ fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared 
         body: body.clone(),
         ground,
         sampling: Sampling::Trilinear,
-        manifolds: Manifolds::Spread,
+        manifolds: Manifolds::Reduced,
         assets: &assets,
     };
     vps.prepare(&scene).expect("a sound scene")

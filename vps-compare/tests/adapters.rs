@@ -32,7 +32,7 @@ fn all_find_a_ball_on_a_box() {
         body: options(2000),
         ground,
         sampling: Sampling::Trilinear,
-        manifolds: Manifolds::Spread,
+        manifolds: Manifolds::Reduced,
         assets: &assets,
     };
     let decomposition = ConvexDecomposition {
@@ -91,7 +91,7 @@ fn all_find_a_ball_on_a_ball() {
         body: options.clone(),
         ground,
         sampling: Sampling::Trilinear,
-        manifolds: Manifolds::Spread,
+        manifolds: Manifolds::Reduced,
         assets: &assets,
     };
     let decomposition = ConvexDecomposition {

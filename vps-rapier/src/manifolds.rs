@@ -31,7 +31,7 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
         let tracked = tracked_contact(contact, data);
         let normal = contact.normals[0];
         let same = match kind {
-            Manifolds::Spread => manifolds.iter_mut().find(|m| has_normal(m, normal)),
+            Manifolds::Reduced => manifolds.iter_mut().find(|m| has_normal(m, normal)),
             Manifolds::Segments(_) => None,
         };
         if let Some(manifold) = same {

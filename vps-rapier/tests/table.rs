@@ -202,7 +202,7 @@ fn every_pair_collides() {
     let ours = vps_box(HALF, 3000);
     let exact = Cuboid::new(vector(HALF));
     let in_compound = SharedShape::compound(vec![(Pose::IDENTITY, ours.clone().into())]);
-    let dispatchers = [Manifolds::Spread, Manifolds::Segments(3)].map(|manifolds| VpsDispatcher {
+    let dispatchers = [Manifolds::Reduced, Manifolds::Segments(3)].map(|manifolds| VpsDispatcher {
         manifolds,
         ..VpsDispatcher::default()
     });

@@ -135,7 +135,7 @@ fn vps<'a>(settings: &algorithms::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
         },
         manifolds: settings
             .segments
-            .map_or(Manifolds::Spread, Manifolds::Segments),
+            .map_or(Manifolds::Reduced, Manifolds::Segments),
         assets,
     }
 }

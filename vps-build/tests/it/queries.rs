@@ -83,7 +83,7 @@ fn check_manifold<F: DistanceField + ?Sized, const N: usize>(
         Approach::Unknown,
     ];
     for approach in approaches {
-        let listed = ContactManifold::<N>::spread(flat, along, prediction, approach);
+        let listed = ContactManifold::<N>::reduce(flat, along, prediction, approach);
         prop_assert_eq!(query.with_approach(approach).manifold::<N>(), listed);
     }
     Ok(())

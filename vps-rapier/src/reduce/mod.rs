@@ -1,6 +1,6 @@
 //! Contact reduction: from all contacts of a pair to the few an engine gets, in one pipeline.
 //!
-//! For [`Manifolds::Spread`] the steps of [`contacts`] are:
+//! For [`Manifolds::Reduced`] the steps of [`contacts`] are:
 //! 1. Each shell gives the deepest contact and those that spread over the largest area, each sampled
 //!    edge its contact.
 //! 2. Contacts of several sources are reduced together ([`select`]).
@@ -37,7 +37,7 @@ pub enum Manifolds {
     /// The deepest contact and those that spread over the largest area (section 3.2), in one
     /// manifold for each normal: four of each, eight in all.
     #[default]
-    Spread,
+    Reduced,
     /// The deepest contact of each segment of a level of the shell's tree (section 2.4), 1 being the
     /// top, in a manifold of its own. Switch rapier's `contact_clustering` off, which would join them
     /// again.
@@ -57,7 +57,7 @@ pub(crate) fn contacts(
     let mut found = Vec::new();
     for shell in pair.shells(pos12) {
         match manifolds {
-            Manifolds::Spread => {
+            Manifolds::Reduced => {
                 shell.manifold::<MAX_CONTACTS>(pos12, prediction, approach, previous, &mut found);
             }
             Manifolds::Segments(level) => shell.segments(pos12, prediction, level, &mut found),
@@ -69,7 +69,7 @@ pub(crate) fn contacts(
     }
     let has_edges = found.len() > by_shells;
     match manifolds {
-        Manifolds::Spread => {
+        Manifolds::Reduced => {
             let mut persistent = re_evaluate(pair, pos12, previous, &found);
             if has_edges || pair.secondary(pos12).is_some() {
                 reduce::<MAX_CONTACTS>(&mut found, prediction, approach);

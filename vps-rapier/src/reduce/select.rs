@@ -31,7 +31,7 @@ pub(super) fn reduce<const N: usize>(
     let Some(deepest) = numbered.iter().copied().max_by(by_depth) else {
         return;
     };
-    let selected = ContactManifold::<N>::spread(&numbered, deepest.normal, prediction, approach);
+    let selected = ContactManifold::<N>::reduce(&numbered, deepest.normal, prediction, approach);
     let selected = selected.contacts().iter();
     *contacts = selected.map(|c| contacts[c.point as usize]).collect();
 }

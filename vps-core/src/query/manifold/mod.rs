@@ -55,13 +55,13 @@ impl<const N: usize> ContactManifold<N> {
     /// direction in which penetration grows at the deepest point. Costs `N` passes.
     ///
     /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
-    pub fn spread(contacts: &[Contact], along: Vec3, prediction: f32, approach: Approach) -> Self {
+    pub fn reduce(contacts: &[Contact], along: Vec3, prediction: f32, approach: Approach) -> Self {
         let weighting = DepthWeighting {
             prediction,
             approach,
         };
         let deepest = best(contacts, |c| Some(c.penetration));
-        Self::reduce(
+        Self::select(
             deepest,
             |_| along,
             weighting,
@@ -69,7 +69,8 @@ impl<const N: usize> ContactManifold<N> {
         )
     }
 
-    fn reduce(
+    /// Selects contacts from a source, given the deepest.
+    fn select(
         deepest: Option<Contact>,
         along: impl FnOnce(&Contact) -> Vec3,
         weighting: DepthWeighting,
@@ -133,7 +134,7 @@ mod tests {
     }
 
     fn picked<const N: usize>(contacts: &[Contact]) -> Vec<u32> {
-        let manifold = ContactManifold::<N>::spread(contacts, Vec3::Y, 0.1, Approach::RESTING);
+        let manifold = ContactManifold::<N>::reduce(contacts, Vec3::Y, 0.1, Approach::RESTING);
         manifold.contacts().iter().map(|c| c.point).collect()
     }
 
@@ -181,7 +182,7 @@ mod tests {
             contact(2, 8.0, 0.0, -0.01),
         ];
         let second = |contacts: &[Contact], approach| {
-            let manifold = ContactManifold::<2>::spread(contacts, Vec3::Y, 0.1, approach);
+            let manifold = ContactManifold::<2>::reduce(contacts, Vec3::Y, 0.1, approach);
             manifold.contacts()[1].point
         };
         assert_eq!(

@@ -23,7 +23,7 @@ struct SearchedCandidates<'q, 't, F: ?Sized, W> {
 
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// The manifold of the contact set, its area seen along the field's normal at the deepest
-    /// point. It equals that of [`ContactManifold::spread`], but not all contacts are visited.
+    /// point. It equals that of [`ContactManifold::reduce`], but not all contacts are visited.
     ///
     /// One search finds the deepest contact and those of sufficient weight. If these are too few, a
     /// second search finds those of low weight. Contacts of even lower weight, or that do not fit
@@ -54,7 +54,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             query: self,
             buffer,
         };
-        ContactManifold::reduce(deepest, along, weighting, &mut source)
+        ContactManifold::select(deepest, along, weighting, &mut source)
     }
 }
 
