@@ -176,17 +176,17 @@ fn report(
         let map = &asset.voxelmap;
         let stored = |voxel| f64::from(map.center_penetration(voxel));
         let (near, far) = (checked.near.errors(stored), checked.far.errors(stored));
-        let accuracy = map.accuracy();
+        let error_bounds = map.error_bounds();
         writeln!(
             encodings,
             "| {name} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} / {:.3} | {:.3} | {:.3} / {:.3} |",
             run.number("distances_s"),
             run.number("map_bytes") / 1e6,
             run.number("file_bytes") / 1e6,
-            f64::from(accuracy.near_m) / s,
+            f64::from(error_bounds.in_band) / s,
             near.mean / s,
             near.largest / s,
-            f64::from(accuracy.far_m) / s,
+            f64::from(error_bounds.beyond) / s,
             far.mean / s,
             far.largest / s,
         )?;

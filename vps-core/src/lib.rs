@@ -102,7 +102,7 @@ pub use glamx::{Mat3, Pose3, Quat, Vec3};
 #[cfg(feature = "alloc")]
 pub use map::SurfaceMesh;
 pub use map::store::{self, Store, Values};
-pub use map::{Accuracy, BEND_STEPS, Grid, GridError, UNKNOWN_BEND, Voxelmap, VoxelmapError};
+pub use map::{BEND_STEPS, ErrorBounds, Grid, GridError, UNKNOWN_BEND, Voxelmap, VoxelmapError};
 pub use query::{
     Approach, Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact,
     Query, Shells, Side, Sweep, Work,

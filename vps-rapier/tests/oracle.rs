@@ -110,10 +110,10 @@ proptest! {
         let map = &shape.asset.voxelmap;
         let point = Vec3::from_array(at);
         let exact = shape.exact_penetration(point);
-        let beyond = map.accuracy().far_m;
+        let beyond = map.error_bounds().beyond;
         // Away from the surface values may be further off than error bounds say.
         let voxels = 4.0 * map.grid().voxel_size();
-        let far = if exact.abs() + voxels > map.accuracy().band_m { 4.0 * beyond } else { 0.0 };
+        let far = if exact.abs() + voxels > map.error_bounds().narrow_band { 4.0 * beyond } else { 0.0 };
         prop_assume!(map.grid().bounds().contains(point));
         for field in [&map.local() as &dyn DistanceField, &map.linear(), &map.trilinear()] {
             let off = (field.penetration(point, normal) - exact).abs();

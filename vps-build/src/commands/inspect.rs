@@ -128,7 +128,7 @@ fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
     let origin = DVec3::from_array(asset.origin);
     // In mesh coordinates.
     let place = |local: Vec3| json!((origin + local.as_dvec3()).to_array());
-    let accuracy = map.accuracy();
+    let error_bounds = map.error_bounds();
     let clusters: Vec<_> = (1..=tree.level_count())
         .map(|l| tree.level(l).len())
         .collect();
@@ -149,14 +149,14 @@ fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
         ),
         (
             "near_error_m",
-            json!(accuracy.near_m),
-            "largest error close to the surface",
+            json!(error_bounds.in_band),
+            "largest error of a value in the narrow band",
         ),
-        ("far_error_m", json!(accuracy.far_m), "and elsewhere"),
+        ("far_error_m", json!(error_bounds.beyond), "and beyond it"),
         (
             "band_m",
-            json!(accuracy.band_m),
-            "how far close to the surface reaches",
+            json!(error_bounds.narrow_band),
+            "half width of the narrow band",
         ),
         (
             "dense",

@@ -109,7 +109,7 @@ fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
 mod tests {
     use vps_core::conformance::check;
     use vps_core::{
-        Aabb, Accuracy, Discs, DistanceField, Grid, Points, Quat, Values, Vec3, Voxelmap,
+        Aabb, Discs, DistanceField, ErrorBounds, Grid, Points, Quat, Values, Vec3, Voxelmap,
     };
 
     use super::*;
@@ -129,16 +129,16 @@ mod tests {
         }
         let store = Store::dense(grid.dims(), Values::Floats(values.into())).unwrap();
         let curvature = curvature_bounds(&store, 1.0);
-        let accuracy = Accuracy {
-            near_m: 0.0,
-            far_m: 0.0,
-            band_m: 100.0,
+        let error_bounds = ErrorBounds {
+            in_band: 0.0,
+            beyond: 0.0,
+            narrow_band: 100.0,
         };
         let solid = Aabb {
             min: Vec3::splat(-11.0),
             max: Vec3::splat(11.0),
         };
-        Voxelmap::new(grid, 1.0, solid, accuracy, store, curvature.into()).unwrap()
+        Voxelmap::new(grid, 1.0, solid, error_bounds, store, curvature.into()).unwrap()
     }
 
     /// Checks fields at their least smooth points, given by `worst`, from half-way between voxels.
@@ -204,15 +204,22 @@ mod tests {
         for slope in [1.5 * Vec3::X, Vec3::ONE, Vec3::new(0.9, 0.8, 0.1)] {
             let map = map_of(|p| p.dot(slope));
             // No distance field is so steep: only the stored values are known.
-            let accuracy = Accuracy {
-                near_m: 100.0,
-                far_m: 100.0,
-                band_m: 100.0,
+            let error_bounds = ErrorBounds {
+                in_band: 100.0,
+                beyond: 100.0,
+                narrow_band: 100.0,
             };
             let curvature = map.bends().to_vec();
             let (grid, store) = (*map.grid(), map.store().clone());
-            let map =
-                Voxelmap::new(grid, 1.0, map.solid(), accuracy, store, curvature.into()).unwrap();
+            let map = Voxelmap::new(
+                grid,
+                1.0,
+                map.solid(),
+                error_bounds,
+                store,
+                curvature.into(),
+            )
+            .unwrap();
             let down = -slope.normalize();
             for x in [-11.0, -11.5, -13.0] {
                 let center = Vec3::new(x, -10.9, 3.0);

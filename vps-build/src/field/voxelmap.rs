@@ -1,6 +1,6 @@
 //! The voxelmap of a solid: stored values, error bounds and curvature (section 2.1.1).
 
-use vps_core::{Aabb, Accuracy, Grid, Store, Voxelmap};
+use vps_core::{Aabb, ErrorBounds, Grid, Store, Voxelmap};
 
 use super::curvature::curvature_bounds;
 use super::distance::{ExactDistances, by_gradient_walk};
@@ -109,17 +109,17 @@ pub(crate) fn voxelmap(
             error((largest / size).max(NARROW_BAND)) + interpolated,
         )
     };
-    let accuracy = Accuracy {
-        near_m: in_band as f32,
-        far_m: beyond as f32,
-        band_m: ((NARROW_BAND - 0.01) * size) as f32,
+    let error_bounds = ErrorBounds {
+        in_band: in_band as f32,
+        beyond: beyond as f32,
+        narrow_band: ((NARROW_BAND - 0.01) * size) as f32,
     };
     let curvature = curvature_bounds(&store, (quantizer.sigma() / size) as f32);
     Ok(Voxelmap::new(
         grid,
         quantizer.sigma() as f32,
         solid,
-        accuracy,
+        error_bounds,
         store,
         curvature.into(),
     )?)

@@ -53,7 +53,7 @@ proptest! {
             let off = trilinear.error_bound_at(point) + rounding;
             prop_assert!((sampled - distance).abs() <= off, "{point}: {sampled}, {distance} +- {off}");
             // The other samplings read up to four values, with their errors.
-            let beyond = 4.0 * (map.accuracy().far_m - map.accuracy().near_m);
+            let beyond = 4.0 * (map.error_bounds().beyond - map.error_bounds().in_band);
             for field in [&local as &dyn DistanceField, &linear] {
                 let sampled = -field.penetration(point, normal);
                 let over = field.error_bound() + beyond + rounding;
@@ -73,7 +73,7 @@ fn distances_of_faces_are_exact_from_afar() {
         ..BuildOptions::default()
     };
     let map = build(&mesh, &options, &|_| ()).unwrap().asset.voxelmap;
-    let near = map.accuracy().near_m;
+    let near = map.error_bounds().in_band;
     for way in [0.0, 0.1, 0.3, 1.0, 7.0, 100.0] {
         let point = Vec3::new(0.1, 0.2 + way, -0.05);
         let off = map.trilinear().signed_distance(point) - way;

@@ -75,9 +75,9 @@ proptest! {
         let asset = build(&mesh, &options, &|_| ()).unwrap().asset;
         let map = &asset.voxelmap;
         prop_assert_eq!(map.store().is_dense(), is_dense);
-        let accuracy = map.accuracy();
+        let error_bounds = map.error_bounds();
         if !walk && encoding != Encoding::Layers && map.sigma() < 0.5 * map.grid().voxel_size() {
-            prop_assert!(accuracy.far_m <= 1.0001 * map.grid().voxel_size());
+            prop_assert!(error_bounds.beyond <= 1.0001 * map.grid().voxel_size());
         }
         let dims = map.grid().dims();
         for at in at {
@@ -85,10 +85,10 @@ proptest! {
             let stored = map.center_penetration(voxel);
             let exact = exact_penetration(&mesh, map.grid().center(voxel).as_dvec3()) as f32;
             let off = (stored - exact).abs();
-            if stored.abs() <= accuracy.band_m {
-                prop_assert!(off <= accuracy.near_m, "{voxel:?}: {stored}, exact {exact}");
+            if stored.abs() <= error_bounds.narrow_band {
+                prop_assert!(off <= error_bounds.in_band, "{voxel:?}: {stored}, exact {exact}");
             } else {
-                prop_assert!(off <= accuracy.far_m, "{voxel:?}: {stored}, exact {exact}");
+                prop_assert!(off <= error_bounds.beyond, "{voxel:?}: {stored}, exact {exact}");
             }
         }
     }
@@ -233,8 +233,8 @@ fn check_against(
     for &(p, normal) in points {
         let exact = exact.penetration(p, normal);
         // The error bound holds near the surface.
-        let near = exact.abs() + 2.0 * map.grid().voxel_size() <= map.accuracy().band_m;
-        let beyond = if near { 0.0 } else { map.accuracy().far_m };
+        let near = exact.abs() + 2.0 * map.grid().voxel_size() <= map.error_bounds().narrow_band;
+        let beyond = if near { 0.0 } else { map.error_bounds().beyond };
         for (sampled, bound) in [
             (local.penetration(p, normal), local.error_bound()),
             (trilinear.penetration(p, normal), trilinear.error_bound()),
@@ -319,7 +319,7 @@ fn flat_faces_are_sampled_exactly() {
     let mesh = Mesh::cuboid([1.0, 0.6, 0.8]).unwrap();
     let asset = asset(&mesh, 10, Encoding::Distances(None));
     let (local, trilinear) = (asset.voxelmap.local(), asset.voxelmap.trilinear());
-    let near = asset.voxelmap.accuracy().near_m;
+    let near = asset.voxelmap.error_bounds().in_band;
     for i in 0..200 {
         let depth = 0.001 * (i - 100) as f32;
         let p = Vec3::new(0.0013 * i as f32 - 0.1, 0.3 - depth, 0.05);

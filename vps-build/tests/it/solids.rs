@@ -99,7 +99,7 @@ proptest! {
             vps_core::encode(&found.asset).len(), vps_core::encode(&expected.asset).len());
         prop_assert_eq!(found.repairs.removed_faces, doubled.len() + 1);
         prop_assert_eq!((found.repairs.closed_holes, found.repairs.hidden_faces), (0, 0));
-        let near = f64::from(found.asset.voxelmap.accuracy().near_m);
+        let near = f64::from(found.asset.voxelmap.error_bounds().in_band);
         check(&found, near, |p| exact_penetration(&mesh, p), |_| false)?;
         let filled = built(&cluttered, Sign::Fill);
         prop_assert_eq!(filled.asset.mass.volume > 0.0, true);
@@ -122,7 +122,7 @@ proptest! {
         // closer than the rest. Both lie in the ball around the removed part.
         let reach = gone.iter().flatten().map(|&v| mesh.vertices()[v as usize].distance(center));
         let reach = reach.fold(0.0, f64::max);
-        let near = f64::from(built.asset.voxelmap.accuracy().near_m);
+        let near = f64::from(built.asset.voxelmap.error_bounds().in_band);
         check(&built, near, |p| exact_penetration(&mesh, p), |p| {
             p.distance(center) - reach <= exact_penetration(&mesh, p).abs() + 1e-9
         })?;
@@ -161,7 +161,7 @@ fn parts_beside_each_other_are_each_turned_outwards() {
     assert_eq!(built.repairs.turned_faces, ball.triangles().len());
     let exact =
         |p: DVec3| exact_penetration(&ball, p).max(exact_penetration(&moved(&ball, DVec3::X), p));
-    let near = f64::from(built.asset.voxelmap.accuracy().near_m);
+    let near = f64::from(built.asset.voxelmap.error_bounds().in_band);
     check(&built, near, exact, |_| false).unwrap();
 }
 
@@ -205,7 +205,7 @@ fn faces_apart_and_turned_at_random_are_filled() {
     assert_eq!(filled.repairs.turned_faces, triangles.len().div_ceil(3));
     assert!(filled.repairs.left_open);
     assert!((filled.asset.mass.volume / (std::f32::consts::PI / 6.0) - 1.0).abs() < 0.03);
-    let near = f64::from(filled.asset.voxelmap.accuracy().near_m) + 1e-6;
+    let near = f64::from(filled.asset.voxelmap.error_bounds().in_band) + 1e-6;
     check(
         &filled,
         near,

@@ -42,7 +42,7 @@
 //! | 48..52 | voxel size s |
 //! | 52..56 | σ, what a step of a value is worth |
 //! | 56..80 | lowest and highest corner of the box of the mesh |
-//! | 80..92 | error near the surface, error elsewhere, where near ends (see [`Accuracy`]) |
+//! | 80..92 | largest error in the narrow band, largest error beyond it, half width of the band (see [`ErrorBounds`]) |
 //! | 92..132 | [`MassProperties`]: volume, centre, inertia xx, yy, zz, xy, xz, yz |
 //! | 132..136 | zeros |
 
@@ -54,7 +54,7 @@ use super::Asset;
 use super::mass::MassProperties;
 use crate::aabb::Aabb;
 use crate::map::store::{CellGroup, RefinedCell, Store, Values};
-use crate::map::{Accuracy, Grid, GridError, Voxelmap, VoxelmapError};
+use crate::map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError};
 use crate::shell::{Cluster, PointSphereTree, TreeError};
 
 /// Version of the `.vps` file this library reads and writes.
@@ -97,9 +97,9 @@ struct Parameters {
     sigma: f32,
     solid_min: [f32; 3],
     solid_max: [f32; 3],
-    near_m: f32,
-    far_m: f32,
-    band_m: f32,
+    in_band: f32,
+    beyond: f32,
+    narrow_band: f32,
     mass: MassProperties,
     zero: u32,
 }
@@ -262,10 +262,10 @@ impl<'a> Asset<'a> {
                     min: Vec3::from_array(p.solid_min),
                     max: Vec3::from_array(p.solid_max),
                 },
-                Accuracy {
-                    near_m: p.near_m,
-                    far_m: p.far_m,
-                    band_m: p.band_m,
+                ErrorBounds {
+                    in_band: p.in_band,
+                    beyond: p.beyond,
+                    narrow_band: p.narrow_band,
                 },
                 store,
                 cast(bytes, bends, header.bends as usize)?.into(),
@@ -306,7 +306,7 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         },
         level_starts: tree.level_starts().len() as u16,
     };
-    let accuracy = map.accuracy();
+    let error_bounds = map.error_bounds();
     let parameters = Parameters {
         origin: asset.origin,
         dims: map.grid().dims(),
@@ -315,9 +315,9 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         sigma: map.sigma(),
         solid_min: map.solid().min.to_array(),
         solid_max: map.solid().max.to_array(),
-        near_m: accuracy.near_m,
-        far_m: accuracy.far_m,
-        band_m: accuracy.band_m,
+        in_band: error_bounds.in_band,
+        beyond: error_bounds.beyond,
+        narrow_band: error_bounds.narrow_band,
         mass: asset.mass,
         zero: 0,
     };

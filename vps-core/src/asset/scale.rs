@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::Asset;
 use super::mass::MassProperties;
 use crate::aabb::Aabb;
-use crate::map::{Accuracy, Grid, GridError, Voxelmap, VoxelmapError};
+use crate::map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError};
 use crate::shell::{Cluster, PointSphereTree, TreeError};
 
 /// Why an asset cannot be scaled.
@@ -52,17 +52,17 @@ fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, Scal
         grid.dims(),
     )?;
     let solid = map.solid();
-    let Accuracy {
-        near_m,
-        far_m,
-        band_m,
-    } = map.accuracy();
+    let ErrorBounds {
+        in_band,
+        beyond,
+        narrow_band,
+    } = map.error_bounds();
     // Every coordinate is rounded once more.
     let rounding = f32::EPSILON * (solid.min.abs().max(solid.max.abs())).length();
-    let accuracy = Accuracy {
-        near_m: (near_m + rounding) * factor,
-        far_m: (far_m + rounding) * factor,
-        band_m: band_m * factor,
+    let error_bounds = ErrorBounds {
+        in_band: (in_band + rounding) * factor,
+        beyond: (beyond + rounding) * factor,
+        narrow_band: narrow_band * factor,
     };
     let solid = Aabb {
         min: solid.min * factor,
@@ -71,7 +71,14 @@ fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, Scal
     let store = map.store().clone().into_owned();
     let bends = map.bends().to_vec().into();
     let sigma = map.sigma() * factor;
-    Ok(Voxelmap::new(grid, sigma, solid, accuracy, store, bends)?)
+    Ok(Voxelmap::new(
+        grid,
+        sigma,
+        solid,
+        error_bounds,
+        store,
+        bends,
+    )?)
 }
 
 fn scaled_tree(

@@ -1,7 +1,7 @@
 //! Why a voxelmap is refused.
 
 use crate::aabb::Aabb;
-use crate::map::accuracy::Accuracy;
+use crate::map::error_bounds::ErrorBounds;
 
 /// Why a [`Voxelmap`](crate::Voxelmap) was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -44,8 +44,10 @@ pub enum VoxelmapError {
     #[error("the value of one step must be positive and finite, not {0} m")]
     Sigma(f32),
     /// An error bound is invalid.
-    #[error("error bounds must be finite and not negative, near not above far: {0:?}")]
-    Accuracy(Accuracy),
+    #[error(
+        "error bounds must be finite and not negative, nor smaller beyond the narrow band: {0:?}"
+    )]
+    ErrorBounds(ErrorBounds),
     /// The solid leaves the box between the outermost voxel centres.
     #[error("the solid {0:?} does not lie between the outermost voxel centres of the grid")]
     Solid(Aabb),

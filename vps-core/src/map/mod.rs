@@ -1,15 +1,15 @@
 //! Voxelmaps: a regular grid, the store of its values, and the surface of the solid.
 
-mod accuracy;
 mod error;
+mod error_bounds;
 mod grid;
 pub mod store;
 #[cfg(feature = "alloc")]
 mod surface_mesh;
 mod voxelmap;
 
-pub use self::accuracy::Accuracy;
 pub use self::error::VoxelmapError;
+pub use self::error_bounds::ErrorBounds;
 pub use self::grid::{Grid, GridError};
 #[cfg(feature = "alloc")]
 pub use self::surface_mesh::SurfaceMesh;

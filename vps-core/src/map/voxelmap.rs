@@ -3,8 +3,8 @@
 use wide::f32x4;
 
 use crate::aabb::Aabb;
-use crate::map::accuracy::Accuracy;
 use crate::map::error::VoxelmapError;
+use crate::map::error_bounds::ErrorBounds;
 use crate::map::grid::Grid;
 use crate::map::store::{CELL, Store, product};
 use crate::simd::{LANES, Voxels};
@@ -22,7 +22,7 @@ pub struct Voxelmap<'a> {
     grid: Grid,
     sigma: f32,
     solid: Aabb,
-    accuracy: Accuracy,
+    error_bounds: ErrorBounds,
     store: Store<'a>,
     bends: Storage<'a, u8>,
 }
@@ -49,7 +49,7 @@ impl<'a> Voxelmap<'a> {
         grid: Grid,
         sigma: f32,
         solid: Aabb,
-        accuracy: Accuracy,
+        error_bounds: ErrorBounds,
         store: Store<'a>,
         bends: Storage<'a, u8>,
     ) -> Result<Self, VoxelmapError> {
@@ -69,13 +69,13 @@ impl<'a> Voxelmap<'a> {
         if !(sigma > 0.0 && sigma.is_finite()) {
             return Err(VoxelmapError::Sigma(sigma));
         }
-        let Accuracy {
-            near_m,
-            far_m,
-            band_m,
-        } = accuracy;
-        if !(near_m >= 0.0 && near_m <= far_m && far_m.is_finite() && band_m >= 0.0) {
-            return Err(VoxelmapError::Accuracy(accuracy));
+        let ErrorBounds {
+            in_band,
+            beyond,
+            narrow_band,
+        } = error_bounds;
+        if !(in_band >= 0.0 && in_band <= beyond && beyond.is_finite() && narrow_band >= 0.0) {
+            return Err(VoxelmapError::ErrorBounds(error_bounds));
         }
         let bounds = grid.center_bounds();
         let tolerance = 0.01 * grid.voxel_size();
@@ -89,7 +89,7 @@ impl<'a> Voxelmap<'a> {
             grid,
             sigma,
             solid,
-            accuracy,
+            error_bounds,
             store,
             bends,
         })
@@ -115,8 +115,8 @@ impl<'a> Voxelmap<'a> {
 
     /// Error bounds of the values.
     #[inline]
-    pub fn accuracy(&self) -> Accuracy {
-        self.accuracy
+    pub fn error_bounds(&self) -> ErrorBounds {
+        self.error_bounds
     }
 
     /// The values v; positive inside.
@@ -166,7 +166,7 @@ impl<'a> Voxelmap<'a> {
             grid: self.grid,
             sigma: self.sigma,
             solid: self.solid,
-            accuracy: self.accuracy,
+            error_bounds: self.error_bounds,
             store: self.store.into_owned(),
             bends: self.bends.into_owned(),
         }

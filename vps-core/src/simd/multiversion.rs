@@ -140,17 +140,17 @@ mod tests {
             Store::dense(dims, Values::Floats(floats.into())),
         ]
         .map(|store| {
-            let accuracy = Accuracy {
-                near_m: 1e-3,
-                far_m: 0.1,
-                band_m: 0.5,
+            let error_bounds = ErrorBounds {
+                in_band: 1e-3,
+                beyond: 0.1,
+                narrow_band: 0.5,
             };
             let solid = Aabb {
                 min: Vec3::splat(-0.7),
                 max: Vec3::splat(0.7),
             };
             let bends = bends.clone().into();
-            Voxelmap::new(grid, 1e-3, solid, accuracy, store.unwrap(), bends).unwrap()
+            Voxelmap::new(grid, 1e-3, solid, error_bounds, store.unwrap(), bends).unwrap()
         })
     }
 

@@ -46,7 +46,7 @@ impl<'s> EdgeSampler<'s> {
             max_opening: 1.0 / (1.0 + steepest * steepest).sqrt(),
             min_width: MIN_WIDTH * vps.spacing(),
             solid: map.solid(),
-            far_error: map.accuracy().far_m,
+            far_error: map.error_bounds().beyond,
             step: STEP * map.grid().voxel_size(),
             is_first,
         }

@@ -136,7 +136,7 @@ impl<'s> ShellInField<'s> {
                 Sampling::Local => Field::Local(map.local()),
             },
             field_shape: Some(field),
-            far_error: map.accuracy().far_m,
+            far_error: map.error_bounds().beyond,
             shell_is_first,
         }
     }

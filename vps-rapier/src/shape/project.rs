@@ -115,12 +115,12 @@ impl<'s> Projection<'s> {
     /// Whether the field shows that no point of the surface is closer than the best.
     fn is_closest(&self, point: Vec3) -> bool {
         let map = &self.shape.asset().voxelmap;
-        let (depth, accuracy) = (
+        let (depth, error_bounds) = (
             self.field.penetration(point, Vec3::ZERO).abs(),
-            map.accuracy(),
+            map.error_bounds(),
         );
         // Beyond the narrow band the error of the field exceeds the tolerance.
-        depth + 2.0 * self.voxel_size <= accuracy.band_m
+        depth + 2.0 * self.voxel_size <= error_bounds.narrow_band
             && self
                 .best
                 .is_some_and(|best| best.distance(point) <= depth + TOLERANCE * self.voxel_size)

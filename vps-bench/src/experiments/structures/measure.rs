@@ -86,7 +86,7 @@ pub(super) fn run(
     };
     let [voxels_x, voxels_y, voxels_z] = asset.voxelmap.grid().dims();
     let store = asset.voxelmap.store();
-    let accuracy = asset.voxelmap.accuracy();
+    let error_bounds = asset.voxelmap.error_bounds();
     let row = Row {
         voxels_x,
         voxels_y,
@@ -95,8 +95,8 @@ pub(super) fn run(
         map_bytes: store.byte_len(),
         tree_bytes: asset.tree.byte_len(),
         file_bytes: encode(&asset).len(),
-        near_error_m: accuracy.near_m,
-        far_error_m: accuracy.far_m,
+        near_error_m: error_bounds.in_band,
+        far_error_m: error_bounds.beyond,
         points: asset.tree.point_count(),
         levels: asset.tree.level_count(),
         voxels_s: seconds(Stage::Voxels),

@@ -79,7 +79,7 @@ impl DistanceField for Linear<'_> {
     fn error_bound(&self) -> f32 {
         // The error of the value at the centre, and three halves of that of a difference of two
         // values.
-        4.0 * self.0.accuracy().near_m + (HALF_DIAGONAL + 1.5) * self.0.grid().voxel_size()
+        4.0 * self.0.error_bounds().in_band + (HALF_DIAGONAL + 1.5) * self.0.grid().voxel_size()
     }
 }
 

@@ -62,6 +62,6 @@ impl DistanceField for LocalPenetration<'_> {
 
     #[inline]
     fn error_bound(&self) -> f32 {
-        self.0.accuracy().near_m + 2.0 * HALF_DIAGONAL * self.0.grid().voxel_size()
+        self.0.error_bounds().in_band + 2.0 * HALF_DIAGONAL * self.0.grid().voxel_size()
     }
 }

@@ -74,8 +74,8 @@ impl Trilinear<'_> {
     /// The most by which the [signed distance](DistanceField::signed_distance) at `point` exceeds
     /// the exact one, in metres. It is the [error bound](DistanceField::error_bound) of the field
     /// close to the surface. Beyond the narrow band it includes the larger error of values
-    /// ([`Accuracy::far_m`](crate::Accuracy::far_m)). Outside of the grid it is that of the closest
-    /// point of the grid.
+    /// ([`ErrorBounds::beyond`](crate::ErrorBounds::beyond)). Outside of the grid it is that of the
+    /// closest point of the grid.
     pub fn overestimate_bound_at(&self, point: Vec3) -> f32 {
         let sampled = self.sampled(Vectors::splat(point)).values.to_array()[0];
         HALF_DIAGONAL * self.voxel_size() + self.value_error(sampled)
@@ -83,13 +83,13 @@ impl Trilinear<'_> {
 
     /// The largest error of the values around a point, given the interpolated value.
     fn value_error(&self, interpolated: f32) -> f32 {
-        let accuracy = self.0.accuracy();
+        let accuracy = self.0.error_bounds();
         // A value interpolated from one beyond the narrow band is no closer to zero than this.
-        let reach = SQRT_3 * self.voxel_size() + accuracy.far_m + accuracy.near_m;
-        if interpolated.abs() + reach <= accuracy.band_m {
-            accuracy.near_m
+        let reach = SQRT_3 * self.voxel_size() + accuracy.beyond + accuracy.in_band;
+        if interpolated.abs() + reach <= accuracy.narrow_band {
+            accuracy.in_band
         } else {
-            accuracy.far_m
+            accuracy.beyond
         }
     }
 
@@ -156,7 +156,7 @@ impl Trilinear<'_> {
     #[inline(always)]
     fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
-        let (s, accuracy) = (map.grid().voxel_size(), map.accuracy());
+        let (s, accuracy) = (map.grid().voxel_size(), map.error_bounds());
         let centers = Vectors::from(discs.centers);
         let radii = f32x4::new(discs.radii);
         let sampled = self.sampled(centers);
@@ -191,7 +191,7 @@ impl Trilinear<'_> {
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
         let change = smoothed.fast_min(radii * SQRT_3);
         let probability = (radii * (SQRT_3 * map.grid().per_metre())).fast_min(f32x4::ONE);
-        let errors = ErrorModel::new(accuracy, SQRT_3 * s + 2.0 * accuracy.far_m);
+        let errors = ErrorModel::new(accuracy, SQRT_3 * s + 2.0 * accuracy.beyond);
         let error = errors.error_at(at_center);
         let lipschitz_bound =
             errors.upper_bound(at_center + change + probability * error, probability);
@@ -206,7 +206,7 @@ impl Trilinear<'_> {
         }
         let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &map.solid());
         // The interpolated value changes by at most the distance and these terms.
-        let at_clamped = at_center + error + (MAX_SMOOTHING * s + accuracy.far_m);
+        let at_clamped = at_center + error + (MAX_SMOOTHING * s + accuracy.beyond);
         let exterior_bound = extrapolation.bounds(at_clamped, radii);
         let to_box = centers.minus(centers.clamped(&map.solid())).length();
         let box_bound = errors.upper_bound(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
@@ -284,7 +284,7 @@ impl DistanceField for Trilinear<'_> {
 
     #[inline]
     fn error_bound(&self) -> f32 {
-        self.0.accuracy().near_m + HALF_DIAGONAL * self.0.grid().voxel_size()
+        self.0.error_bounds().in_band + HALF_DIAGONAL * self.0.grid().voxel_size()
     }
 
     #[inline(always)]

@@ -17,14 +17,14 @@ pub(super) fn bound_by_voxel(
     radius: f32,
     max_deviation: f32,
 ) -> f32 {
-    let (grid, accuracy) = (map.grid(), map.accuracy());
+    let (grid, error_bounds) = (map.grid(), map.error_bounds());
     let clamped = grid.bounds().clamp(center);
     let voxel = grid.voxel_at(clamped);
     let stored = map.center_penetration(voxel);
-    let error = if stored.abs() > accuracy.band_m {
-        accuracy.far_m
+    let error = if stored.abs() > error_bounds.narrow_band {
+        error_bounds.beyond
     } else {
-        accuracy.near_m
+        error_bounds.in_band
     };
     let deviation = max_deviation * grid.voxel_size();
     // The exact penetration changes by at most the distance from the voxel's centre; outside of the
@@ -32,8 +32,8 @@ pub(super) fn bound_by_voxel(
     let exact = stored + error + clamped.distance(grid.center(voxel));
     // At the border the sum of eq. 5 contains four times the error of a value, and its neighbours may
     // differ by three diagonals.
-    let reach = 3.0 * SQRT_3 * grid.voxel_size() + 4.0 * accuracy.far_m;
-    let errors = ErrorModel::new(accuracy, reach);
+    let reach = 3.0 * SQRT_3 * grid.voxel_size() + 4.0 * error_bounds.beyond;
+    let errors = ErrorModel::new(error_bounds, reach);
     let upper_bound = |exact: f32| errors.upper_bound(f32x4::splat(exact), f32x4::splat(4.0));
     let lipschitz_bound = upper_bound(exact + radius + deviation);
     if clamped == center {
@@ -46,7 +46,7 @@ pub(super) fn bound_by_voxel(
         Vectors::splat(center - clamped),
         &map.solid(),
     );
-    let at_clamped = f32x4::splat(exact + deviation + 4.0 * accuracy.far_m);
+    let at_clamped = f32x4::splat(exact + deviation + 4.0 * error_bounds.beyond);
     let exterior_bound = extrapolation.bounds(at_clamped, f32x4::splat(radius));
     lipschitz_bound
         .fast_min(box_bound)

@@ -32,7 +32,7 @@ use crate::storage::Storage;
 ///   either, mainly close to the surface, the 8 values of a brick of 2 x 2 x 2 voxels are stored.
 ///
 /// The values of the lattice come first, then those of the refined cells, then the bricks. The
-/// builder decides about refinement and states the error in [`Accuracy`](crate::Accuracy).
+/// builder decides about refinement and states the error in [`ErrorBounds`](crate::ErrorBounds).
 #[derive(Clone, Debug)]
 pub struct Store<'a> {
     dims: [u32; 3],
