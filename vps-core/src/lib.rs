@@ -102,7 +102,9 @@ pub use glamx::{Mat3, Pose3, Quat, Vec3};
 #[cfg(feature = "alloc")]
 pub use map::SurfaceMesh;
 pub use map::store::{self, Store, Values};
-pub use map::{BEND_STEPS, ErrorBounds, Grid, GridError, UNKNOWN_BEND, Voxelmap, VoxelmapError};
+pub use map::{
+    CURVATURE_STEPS, CURVATURE_UNKNOWN, ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError,
+};
 pub use query::{
     Approach, Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact,
     Query, Shells, Side, Sweep, Work,

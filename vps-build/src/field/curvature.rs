@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use vps_core::store::{CELL, cell_dims};
-use vps_core::{BEND_STEPS, Store, UNKNOWN_BEND};
+use vps_core::{CURVATURE_STEPS, CURVATURE_UNKNOWN, Store};
 
 /// Largest distance from the surface, in voxels, with a known bound. Queries rarely look beyond.
 const MAX_DISTANCE: f32 = 24.0;
@@ -11,7 +11,7 @@ const MAX_DISTANCE: f32 = 24.0;
 /// Values along an edge of a cell, with one more voxel at each end.
 const EDGE: usize = CELL as usize + 2;
 
-/// The curvature bounds of a map, in steps of 1 / [`BEND_STEPS`] voxels. A stored value is worth
+/// The curvature bounds of a map, in steps of 1 / [`CURVATURE_STEPS`] voxels. A stored value is worth
 /// `sigma` voxels.
 pub(crate) fn curvature_bounds(store: &Store<'_>, sigma: f32) -> Vec<u8> {
     let cells = cell_dims(store.dims());
@@ -45,7 +45,7 @@ fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
     let dims = store.dims();
     let middle = [0, 1, 2].map(|a| (cell[a] * CELL + CELL / 2).min(dims[a] - 1));
     if (store.value(middle) * sigma).abs() > MAX_DISTANCE {
-        return UNKNOWN_BEND;
+        return CURVATURE_UNKNOWN;
     }
     // Beyond the border of the grid values are repeated, and not used.
     let mut values = [[[0.0_f32; EDGE]; EDGE]; EDGE];
@@ -97,11 +97,11 @@ fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
         }
     }
     // Rounded up, by more than any rounding error here.
-    let steps = (most * sigma * BEND_STEPS * 1.0001).ceil();
-    if steps < f32::from(UNKNOWN_BEND) {
+    let steps = (most * sigma * CURVATURE_STEPS * 1.0001).ceil();
+    if steps < f32::from(CURVATURE_UNKNOWN) {
         steps as u8
     } else {
-        UNKNOWN_BEND
+        CURVATURE_UNKNOWN
     }
 }
 
@@ -171,7 +171,7 @@ mod tests {
         tight
     }
 
-    /// The distance to the centre of one voxel: interpolation with_neighbours it is as steep as possible.
+    /// The distance to the centre of one voxel: interpolation around it is as steep as possible.
     #[test]
     fn a_point_is_bounded() {
         let at = Vec3::splat(0.5);
@@ -209,7 +209,7 @@ mod tests {
                 beyond: 100.0,
                 narrow_band: 100.0,
             };
-            let curvature = map.bends().to_vec();
+            let curvature = map.curvature_bounds().to_vec();
             let (grid, store) = (*map.grid(), map.store().clone());
             let map = Voxelmap::new(
                 grid,
@@ -233,10 +233,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_flat_does_not_bend() {
+    fn a_planar_field_has_no_curvature() {
         let slope = Vec3::new(0.25, -0.5, 0.125);
         let map = map_of(|p| p.dot(slope));
-        assert!(map.bends().iter().all(|&b| b == 0));
+        assert!(map.curvature_bounds().iter().all(|&b| b == 0));
         // So a disc across the slope has no more than its centre.
         let normal = slope.normalize();
         check(

@@ -13,7 +13,7 @@
 //! | 40..48 | number of clusters |
 //! | 48..52 | number of groups of cells, 0 for a dense voxelmap |
 //! | 52..56 | number of refined cells |
-//! | 56..60 | number of bends |
+//! | 56..60 | number of curvature bounds |
 //! | 60..62 | bytes of a value: 2 (i16) or 4 (f32) |
 //! | 62..64 | number of levels + 1 |
 //!
@@ -23,7 +23,7 @@
 //! |---|---|---|
 //! | parameters | see below | 136 |
 //! | values v of the voxelmap, in the order of its [`Store`] | i16 or f32 | 2 or 4 |
-//! | bends, one for each cell of 8 x 8 x 8 voxels (see [`Voxelmap::new`]) | u8 | 1 |
+//! | curvature bounds, one for each cell of 8 x 8 x 8 voxels (see [`Voxelmap::new`]) | u8 | 1 |
 //! | groups of cells | a [`CellGroup`]: two times bits u64, refined before u32, zero u32 | 24 |
 //! | refined cells | a [`RefinedCell`]: bits u64, first brick u32, zero u32 | 16 |
 //! | points in metres, in the order of the leaves | 3 x f32 | 12 |
@@ -78,7 +78,7 @@ struct Header {
     clusters: u64,
     groups: u32,
     cells: u32,
-    bends: u32,
+    curvature_bounds: u32,
     value_bytes: u16,
     level_starts: u16,
 }
@@ -163,7 +163,7 @@ impl SectionLayout {
         let sizes = [
             size_of::<Parameters>(),
             size(header.values, header.value_bytes as usize)?,
-            header.bends as usize,
+            header.curvature_bounds as usize,
             size(u64::from(header.groups), size_of::<CellGroup>())?,
             size(u64::from(header.cells), size_of::<RefinedCell>())?,
             size(header.points, size_of::<[f32; 3]>())?,
@@ -225,7 +225,7 @@ impl<'a> Asset<'a> {
         let [
             parameters,
             values,
-            bends,
+            curvature_bounds,
             groups,
             cells,
             points,
@@ -268,7 +268,7 @@ impl<'a> Asset<'a> {
                     narrow_band: p.narrow_band,
                 },
                 store,
-                cast(bytes, bends, header.bends as usize)?.into(),
+                cast(bytes, curvature_bounds, header.curvature_bounds as usize)?.into(),
             )?,
             tree: PointSphereTree::new(
                 cast(bytes, points, point_count)?.into(),
@@ -299,7 +299,7 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
         clusters: tree.clusters().len() as u64,
         groups: groups.len() as u32,
         cells: cells.len() as u32,
-        bends: map.bends().len() as u32,
+        curvature_bounds: map.curvature_bounds().len() as u32,
         value_bytes: match values {
             Values::Integers(_) => 2,
             Values::Floats(_) => 4,
@@ -324,7 +324,7 @@ pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
     let sections: [&[u8]; 10] = [
         bytes_of(&parameters),
         values.bytes(),
-        map.bends(),
+        map.curvature_bounds(),
         cast_slice(groups),
         cast_slice(cells),
         cast_slice(tree.points()),

@@ -69,7 +69,7 @@ fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, Scal
         max: solid.max * factor,
     };
     let store = map.store().clone().into_owned();
-    let bends = map.bends().to_vec().into();
+    let curvature_bounds = map.curvature_bounds().to_vec().into();
     let sigma = map.sigma() * factor;
     Ok(Voxelmap::new(
         grid,
@@ -77,7 +77,7 @@ fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, Scal
         solid,
         error_bounds,
         store,
-        bends,
+        curvature_bounds,
     )?)
 }
 

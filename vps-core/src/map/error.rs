@@ -32,12 +32,12 @@ pub enum VoxelmapError {
         /// And of the grid.
         grid: [u32; 3],
     },
-    /// The number of bends is neither 0 nor that of the cells.
-    #[error("{bends} bends for {cells} cells of voxels")]
-    Bends {
-        /// Bends given.
-        bends: usize,
-        /// Bends needed.
+    /// The number of curvature bounds is neither 0 nor that of the cells.
+    #[error("{bounds} curvature bounds for {cells} cells of voxels")]
+    CurvatureBounds {
+        /// Curvature bounds given.
+        bounds: usize,
+        /// Curvature bounds needed.
         cells: usize,
     },
     /// σ is invalid.

@@ -13,4 +13,4 @@ pub use self::error_bounds::ErrorBounds;
 pub use self::grid::{Grid, GridError};
 #[cfg(feature = "alloc")]
 pub use self::surface_mesh::SurfaceMesh;
-pub use self::voxelmap::{BEND_STEPS, UNKNOWN_BEND, Voxelmap};
+pub use self::voxelmap::{CURVATURE_STEPS, CURVATURE_UNKNOWN, Voxelmap};

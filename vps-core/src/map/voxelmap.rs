@@ -24,20 +24,20 @@ pub struct Voxelmap<'a> {
     solid: Aabb,
     error_bounds: ErrorBounds,
     store: Store<'a>,
-    bends: Storage<'a, u8>,
+    curvature_bounds: Storage<'a, u8>,
 }
 
 /// The code of an unknown curvature bound.
-pub const UNKNOWN_BEND: u8 = u8::MAX;
+pub const CURVATURE_UNKNOWN: u8 = u8::MAX;
 
-/// The number of steps of a curvature bound that make up the voxel size.
-pub const BEND_STEPS: f32 = 127.0;
+/// Steps of a curvature bound per voxel size: a step is s / 127.
+pub const CURVATURE_STEPS: f32 = 127.0;
 
 impl<'a> Voxelmap<'a> {
     /// A map over `grid` with the values of `store` in units of `sigma` metres. `solid` is a box
     /// around the mesh the map was made from, and lies between the outermost voxel centres.
     ///
-    /// `bends` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z),
+    /// `curvature_bounds` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z),
     /// valid in it and in the cells around it. In steps of s / 127, it bounds from above the second
     /// differences of the values along an axis, and the deviation from a plane of any square of
     /// four neighbours; 255 where it is unknown. It makes queries faster, and must be correct. It
@@ -51,7 +51,7 @@ impl<'a> Voxelmap<'a> {
         solid: Aabb,
         error_bounds: ErrorBounds,
         store: Store<'a>,
-        bends: Storage<'a, u8>,
+        curvature_bounds: Storage<'a, u8>,
     ) -> Result<Self, VoxelmapError> {
         if store.dims() != grid.dims() {
             return Err(VoxelmapError::Dims {
@@ -60,9 +60,9 @@ impl<'a> Voxelmap<'a> {
             });
         }
         let cells = product(store.cell_dims());
-        if !bends.is_empty() && bends.len() != cells {
-            return Err(VoxelmapError::Bends {
-                bends: bends.len(),
+        if !curvature_bounds.is_empty() && curvature_bounds.len() != cells {
+            return Err(VoxelmapError::CurvatureBounds {
+                bounds: curvature_bounds.len(),
                 cells,
             });
         }
@@ -91,7 +91,7 @@ impl<'a> Voxelmap<'a> {
             solid,
             error_bounds,
             store,
-            bends,
+            curvature_bounds,
         })
     }
 
@@ -126,16 +126,16 @@ impl<'a> Voxelmap<'a> {
     }
 
     /// The curvature bounds of the cells: see [`new`](Self::new).
-    pub fn bends(&self) -> &[u8] {
-        &self.bends
+    pub fn curvature_bounds(&self) -> &[u8] {
+        &self.curvature_bounds
     }
 
     /// The curvature bounds around voxels in metres. Unknown ones are huge but finite, so that times a
     /// distance of zero they give zero.
     #[inline(always)]
-    pub(crate) fn bends_at(&self, voxels: Voxels) -> f32x4 {
+    pub(crate) fn curvature_bounds_at(&self, voxels: Voxels) -> f32x4 {
         let unknown = f32x4::splat(f32::MAX);
-        if self.bends.is_empty() {
+        if self.curvature_bounds.is_empty() {
             return unknown;
         }
         let cells = voxels
@@ -143,13 +143,13 @@ impl<'a> Voxelmap<'a> {
             .linear(self.store.cell_dims());
         let mut steps = [0.0; LANES];
         for lane in 0..LANES {
-            steps[lane] = f32::from(self.bends[cells[lane]]);
+            steps[lane] = f32::from(self.curvature_bounds[cells[lane]]);
         }
         let steps = f32x4::new(steps);
-        let is_unknown = steps.simd_eq(f32x4::splat(f32::from(UNKNOWN_BEND)));
+        let is_unknown = steps.simd_eq(f32x4::splat(f32::from(CURVATURE_UNKNOWN)));
         is_unknown.select(
             unknown,
-            steps * (self.grid.voxel_size() * (1.0 / BEND_STEPS)),
+            steps * (self.grid.voxel_size() * (1.0 / CURVATURE_STEPS)),
         )
     }
 
@@ -168,7 +168,7 @@ impl<'a> Voxelmap<'a> {
             solid: self.solid,
             error_bounds: self.error_bounds,
             store: self.store.into_owned(),
-            bends: self.bends.into_owned(),
+            curvature_bounds: self.curvature_bounds.into_owned(),
         }
     }
 }

@@ -132,7 +132,7 @@ mod tests {
         let sparse: Vec<_> = (0..stored).map(|_| value()).collect();
         let dense: Vec<_> = (0..20 * 17 * 30).map(|_| value()).collect();
         let floats: Vec<_> = dense.iter().map(|&v| f32::from(v) * 0.9).collect();
-        let bends: Vec<_> = (0..36).map(|_| (random() % 256) as u8).collect();
+        let curvature_bounds: Vec<_> = (0..36).map(|_| (random() % 256) as u8).collect();
         let integers = |values: Vec<i16>| Values::Integers(values.into());
         [
             Store::sparse(dims, groups.into(), cells.into(), integers(sparse)),
@@ -149,8 +149,16 @@ mod tests {
                 min: Vec3::splat(-0.7),
                 max: Vec3::splat(0.7),
             };
-            let bends = bends.clone().into();
-            Voxelmap::new(grid, 1e-3, solid, error_bounds, store.unwrap(), bends).unwrap()
+            let curvature_bounds = curvature_bounds.clone().into();
+            Voxelmap::new(
+                grid,
+                1e-3,
+                solid,
+                error_bounds,
+                store.unwrap(),
+                curvature_bounds,
+            )
+            .unwrap()
         })
     }
 

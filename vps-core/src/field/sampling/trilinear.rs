@@ -165,7 +165,7 @@ impl Trilinear<'_> {
         let voxels = radii * map.grid().per_metre();
         let is_in_reach = voxels.simd_le(f32x4::splat(CURVATURE_REACH));
         let gradients = sampled.gradients;
-        let excess = (voxels * 1.5 + SQRT_3) * voxels * map.bends_at(sampled.corners);
+        let excess = (voxels * 1.5 + SQRT_3) * voxels * map.curvature_bounds_at(sampled.corners);
         let grid = map.grid().center_bounds();
         let is_in_grid = centers.depth_in(&grid).simd_ge(radii).all();
         let mut curvature_bound = f32x4::splat(f32::INFINITY);
