@@ -11,8 +11,8 @@
 //! use vps_core::{Cuboid, Pose3, Query, Vec3};
 //! # let (points, normals, areas) = ([[0.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]], [1e-4]);
 //! # let clusters = [vps_core::Cluster {
-//! #     center: [0.0; 3], radius: 1e-6, normal: [0.0, 1.0, 0.0], thickness: 1e-6,
-//! #     lift: 0.0, bulge: 0.0, first: 0, count: 1, parent_point: 0, area: 1e-4,
+//! #     center: [0.0; 3], radius: 1e-6, normal: [0.0, 1.0, 0.0], half_thickness: 1e-6,
+//! #     apex: 0.0, half_curvature: 0.0, first: 0, count: 1, parent_point: 0, area: 1e-4,
 //! # }];
 //! # let levels = [0, 1];
 //! # let tree = vps_core::PointSphereTree::new(

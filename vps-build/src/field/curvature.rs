@@ -248,7 +248,7 @@ mod tests {
         )
         .unwrap();
         let discs = Discs {
-            thickness: [0.0; 4],
+            half_thicknesses: [0.0; 4],
             normals: Points::splat(normal),
             ..Discs::balls(&Points::splat(Vec3::ONE), [3.0; 4])
         };

@@ -29,7 +29,7 @@
 //! | points in metres, in the order of the leaves | 3 x f32 | 12 |
 //! | unit inward normals | 3 x f32 | 12 |
 //! | areas of the points in m² | f32 | 4 |
-//! | clusters, level by level from the top | a [`Cluster`]: centre, radius, normal, thickness, lift, bulge, first child, number of children, parent point (u32 each, the others f32), area | 56 |
+//! | clusters, level by level from the top | a [`Cluster`]: centre, radius, normal, half thickness, apex, half curvature, first child, number of children, parent point (u32 each, the others f32), area | 56 |
 //! | level starts | u32 | 4 |
 //!
 //! The parameters, in metres where they have a unit:

@@ -92,9 +92,9 @@ fn scaled_tree(
         center: times(&c.center),
         radius: (c.radius + slack) * factor,
         normal: c.normal,
-        thickness: (c.thickness + slack) * factor,
-        lift: c.lift * factor,
-        bulge: c.bulge / factor,
+        half_thickness: (c.half_thickness + slack) * factor,
+        apex: c.apex * factor,
+        half_curvature: c.half_curvature / factor,
         area: c.area * factor * factor,
         ..*c
     };

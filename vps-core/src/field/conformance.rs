@@ -101,24 +101,24 @@ pub fn check(
         centers: Points::splat(center),
         radii: [radius; LANES],
         normals: Points::splat(normal),
-        lifts: [0.0; LANES],
-        bulges: [0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius],
-        thickness: [0.0; LANES],
+        apices: [0.0; LANES],
+        half_curvatures: [0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius],
+        half_thicknesses: [0.0; LANES],
     };
     for lane in 0..LANES {
-        let above = height - discs.bulges[lane] * square;
-        // The flat disc stays at the centre. The next two are lifted halfway to the point, with the
-        // other half as their thickness; the last one is lifted to the point.
-        discs.lifts[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
-        discs.thickness[lane] = (above - discs.lifts[lane]).abs() + rounding;
+        let above = height - discs.half_curvatures[lane] * square;
+        // The flat disc stays at the centre. The next two have their apex halfway to the point, and
+        // the other half as their half thickness; the last one has its apex at the point's height.
+        discs.apices[lane] = [0.0, 0.5, 0.5, 1.0][lane] * above;
+        discs.half_thicknesses[lane] = (above - discs.apices[lane]).abs() + rounding;
     }
     let bounds = field.penetration_bounds(&discs);
     let pieces = [
         ("ball", ball),
         ("disc", bounds[0]),
-        ("bowl", bounds[1]),
-        ("dome", bounds[2]),
-        ("deep bowl", bounds[3]),
+        ("paraboloid", bounds[1]),
+        ("inverted paraboloid", bounds[2]),
+        ("steep paraboloid", bounds[3]),
     ];
     for (piece, bound) in pieces {
         if penetration > bound {

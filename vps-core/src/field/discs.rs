@@ -7,8 +7,8 @@ use crate::simd::{LANES, Points, Vectors};
 
 /// Pieces of a shell, each within a ball and close to a paraboloid over a disc. A piece contains the
 /// points within its radius of its centre whose height above the plane through the centre, along its
-/// normal, is lift + bulge × r² up to its thickness, r being the distance from the axis through the
-/// centre along the normal. Lengths in metres.
+/// normal, is apex + half curvature × r² up to its half thickness, r being the distance from the
+/// axis through the centre along the normal. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discs {
     /// Their centres.
@@ -18,11 +18,11 @@ pub struct Discs {
     /// Unit normals of their planes.
     pub normals: Points,
     /// Heights of the apices of the paraboloids above the centres.
-    pub lifts: [f32; LANES],
+    pub apices: [f32; LANES],
     /// Half curvatures of the paraboloids, per metre; positive towards the normals.
-    pub bulges: [f32; LANES],
+    pub half_curvatures: [f32; LANES],
     /// The largest distances from the paraboloids to either side, along the normals.
-    pub thickness: [f32; LANES],
+    pub half_thicknesses: [f32; LANES],
 }
 
 impl Discs {
@@ -33,9 +33,9 @@ impl Discs {
             centers: *centers,
             radii,
             normals: Points::splat(Vec3::Y),
-            lifts: [0.0; LANES],
-            bulges: [0.0; LANES],
-            thickness: radii,
+            apices: [0.0; LANES],
+            half_curvatures: [0.0; LANES],
+            half_thicknesses: radii,
         }
     }
 
@@ -48,16 +48,16 @@ impl Discs {
         let along = f32x4::splat((1.0 - across * across).max(0.0))
             .sqrt()
             .to_array()[0];
-        let bend = across * self.bulges[lane];
+        let quadratic = across * self.half_curvatures[lane];
         // As in `rise`.
-        let r = if bend < 0.0 {
-            radius.min(along / (bend * -2.0))
+        let r = if quadratic < 0.0 {
+            radius.min(along / (quadratic * -2.0))
         } else {
             radius
         };
-        let on_paraboloid = across * self.lifts[lane]
-            + across.abs() * self.thickness[lane]
-            + r * (along + bend * r);
+        let on_paraboloid = across * self.apices[lane]
+            + across.abs() * self.half_thicknesses[lane]
+            + r * (along + quadratic * r);
         on_paraboloid.min(radius)
     }
 
@@ -66,10 +66,10 @@ impl Discs {
     pub(crate) fn grown(&self, by: f32) -> Self {
         let radii = f32x4::new(self.radii);
         // A sideways step of `by` changes the height of the paraboloid by at most this.
-        let aside = f32x4::new(self.bulges).abs() * (radii + radii + by) * by;
+        let aside = f32x4::new(self.half_curvatures).abs() * (radii + radii + by) * by;
         Self {
             radii: (radii + by).to_array(),
-            thickness: (f32x4::new(self.thickness) + by + aside).to_array(),
+            half_thicknesses: (f32x4::new(self.half_thicknesses) + by + aside).to_array(),
             ..*self
         }
     }
@@ -82,13 +82,13 @@ impl Discs {
         let radii = f32x4::new(self.radii);
         let across = gradients.dot(normals);
         let along = gradients.minus(normals.times(across)).length();
-        // On the paraboloid the function is along r + bend r²: largest at the rim or at the vertex.
-        let bend = across * f32x4::new(self.bulges);
-        let vertex = radii.fast_min(along / (bend * -2.0));
-        let r = bend.simd_lt(f32x4::ZERO).select(vertex, radii);
-        let on_paraboloid = across * f32x4::new(self.lifts)
-            + across.abs() * f32x4::new(self.thickness)
-            + r * (along + bend * r);
+        // On the paraboloid the function is along r + quadratic r²: largest at the rim or at the vertex.
+        let quadratic = across * f32x4::new(self.half_curvatures);
+        let vertex = radii.fast_min(along / (quadratic * -2.0));
+        let r = quadratic.simd_lt(f32x4::ZERO).select(vertex, radii);
+        let on_paraboloid = across * f32x4::new(self.apices)
+            + across.abs() * f32x4::new(self.half_thicknesses)
+            + r * (along + quadratic * r);
         // At most its rise in the ball around.
         on_paraboloid.fast_min(steepest * radii)
     }

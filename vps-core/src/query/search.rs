@@ -227,15 +227,15 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         });
         let [x, y, z, radii] = f32x4::transpose([a.0, b.0, c.0, d.0]);
         let centers = Vectors { x, y, z };
-        let [x, y, z, thickness] = f32x4::transpose([a.1, b.1, c.1, d.1]);
+        let [x, y, z, half_thicknesses] = f32x4::transpose([a.1, b.1, c.1, d.1]);
         let normals = Vectors { x, y, z };
         let discs = Discs {
             centers: centers.into(),
             radii: radii.to_array(),
             normals: normals.into(),
-            lifts: [a.2[0], b.2[0], c.2[0], d.2[0]],
-            bulges: [a.2[1], b.2[1], c.2[1], d.2[1]],
-            thickness: thickness.to_array(),
+            apices: [a.2[0], b.2[0], c.2[0], d.2[0]],
+            half_curvatures: [a.2[1], b.2[1], c.2[1], d.2[1]],
+            half_thicknesses: half_thicknesses.to_array(),
         }
         .grown(self.rounding_slack);
         let in_field = Discs {

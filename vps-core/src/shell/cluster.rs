@@ -13,15 +13,15 @@ pub struct Cluster {
     /// Radius R of that ball in metres.
     pub radius: f32,
     /// Unit normal of a plane through the centre. The points lie close to a paraboloid with this axis,
-    /// which is a disc if `bulge` is zero.
+    /// which is a disc if `half_curvature` is zero.
     pub normal: [f32; 3],
     /// The largest distance of the points from the paraboloid, in metres along the normal.
-    pub thickness: f32,
+    pub half_thickness: f32,
     /// Height of the apex above the centre, in metres along the normal.
-    pub lift: f32,
+    pub apex: f32,
     /// Half curvature of the paraboloid, per metre, positive towards the normal: at a distance r
-    /// from the axis its height is lift + bulge × r².
-    pub bulge: f32,
+    /// from the axis its height is apex + half curvature × r².
+    pub half_curvature: f32,
     /// The first child: the index of a cluster within the next level, or on the leaf level of a point.
     pub first: u32,
     /// The number of consecutive children.
@@ -33,20 +33,20 @@ pub struct Cluster {
 }
 
 impl Cluster {
-    /// Centre and radius; normal and thickness; lift and bulge.
+    /// Centre and radius; normal and half thickness; apex and half curvature.
     #[inline(always)]
     pub(crate) fn disc(&self) -> (f32x4, f32x4, [f32; 2]) {
         let ([x, y, z], [u, v, w]) = (self.center, self.normal);
         (
             f32x4::new([x, y, z, self.radius]),
-            f32x4::new([u, v, w, self.thickness]),
-            [self.lift, self.bulge],
+            f32x4::new([u, v, w, self.half_thickness]),
+            [self.apex, self.half_curvature],
         )
     }
 
     /// Cylindrical coordinates of a point: the squared distance from the axis in m², and the height
     /// above the centre in metres along the normal.
-    pub fn around(&self, point: Vec3) -> (f32, f32) {
+    pub fn cylindrical_coordinates(&self, point: Vec3) -> (f32, f32) {
         let normal = Vec3::from_array(self.normal);
         let from_center = point - Vec3::from_array(self.center);
         let height = from_center.dot(normal);
@@ -54,8 +54,8 @@ impl Cluster {
     }
 
     /// Distance of a point from the paraboloid, in metres along the normal.
-    pub fn off_dish(&self, point: Vec3) -> f32 {
-        let (square, height) = self.around(point);
-        (height - (self.lift + self.bulge * square)).abs()
+    pub fn distance_from_paraboloid(&self, point: Vec3) -> f32 {
+        let (square, height) = self.cylindrical_coordinates(point);
+        (height - (self.apex + self.half_curvature * square)).abs()
     }
 }

@@ -43,8 +43,8 @@ pub enum TreeError {
     #[error("the parent point of cluster {0} is not below it")]
     ParentPoint(usize),
     /// A point lies outside of the ball or too far from the paraboloid.
-    #[error("the ball and dish of cluster {cluster} do not hold point {point}")]
-    Disc {
+    #[error("the ball and paraboloid of cluster {cluster} do not contain point {point}")]
+    Bounds {
         /// The cluster.
         cluster: usize,
         /// A point below it.

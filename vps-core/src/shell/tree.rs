@@ -125,7 +125,8 @@ impl<'a> PointSphereTree<'a> {
                 let outside = |&p: &usize| {
                     // A NaN counts as outside.
                     let inside = center.distance(self.point(p)) <= cluster.radius
-                        && cluster.off_dish(self.point(p)) <= cluster.thickness;
+                        && cluster.distance_from_paraboloid(self.point(p))
+                            <= cluster.half_thickness;
                     !inside
                 };
                 let area: f64 = below.clone().map(|p| f64::from(self.areas[p])).sum();
@@ -135,7 +136,7 @@ impl<'a> PointSphereTree<'a> {
                     return Err(TreeError::ClusterArea(start + i));
                 }
                 if let Some(point) = below.into_iter().find(outside) {
-                    return Err(TreeError::Disc {
+                    return Err(TreeError::Bounds {
                         cluster: start + i,
                         point,
                     });

@@ -76,15 +76,17 @@ mod tests {
                     .map(|p| center.distance(p))
                     .fold(0.0, f32::max),
                 normal: normals[below.start],
-                thickness: 0.0,
-                lift: 0.01,
-                bulge: 0.3,
+                half_thickness: 0.0,
+                apex: 0.01,
+                half_curvature: 0.3,
                 first: first as u32,
                 count: count as u32,
                 parent_point: below.start as u32,
                 area: below.len() as f32,
             };
-            cluster.thickness = points.map(|p| cluster.off_dish(p)).fold(0.0, f32::max);
+            cluster.half_thickness = points
+                .map(|p| cluster.distance_from_paraboloid(p))
+                .fold(0.0, f32::max);
             cluster
         };
         let all = RINGS * POINTS_PER_RING;

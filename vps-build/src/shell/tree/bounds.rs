@@ -48,23 +48,25 @@ pub(super) fn bound_clusters(
                 .sum();
             let normal = sum.normalize_or(Vec3::Y);
             cluster.normal = normal.to_array();
-            let around: Vec<_> = points_below().map(|p| cluster.around(p)).collect();
-            (cluster.lift, cluster.bulge) = fit_paraboloid(&around, cluster.radius);
-            cluster.thickness = points_below()
-                .map(|p| cluster.off_dish(p))
+            let coordinates: Vec<_> = points_below()
+                .map(|p| cluster.cylindrical_coordinates(p))
+                .collect();
+            (cluster.apex, cluster.half_curvature) = fit_paraboloid(&coordinates, cluster.radius);
+            cluster.half_thickness = points_below()
+                .map(|p| cluster.distance_from_paraboloid(p))
                 .fold(0.0, f32::max);
             let area: f64 = areas[start..end].iter().map(|&a| f64::from(a)).sum();
             cluster.area = area as f32;
         });
 }
 
-/// The apex and the half curvature of the paraboloid h = apex + half_curvature r² that minimises the
+/// The apex and the half curvature of the paraboloid h = apex + half curvature × r² that minimises the
 /// largest deviation of points, by a search that ends early. Points are given by r² and h: the squared
 /// distance from the axis and the height.
-fn fit_paraboloid(around: &[(f32, f32)], radius: f32) -> (f32, f32) {
+fn fit_paraboloid(coordinates: &[(f32, f32)], radius: f32) -> (f32, f32) {
     // Middle and range of the heights above the paraboloid with apex 0.
     let deviation = |half_curvature: f32| {
-        let heights = around
+        let heights = coordinates
             .iter()
             .map(|(square, height)| height - half_curvature * square);
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), h| {
@@ -72,7 +74,7 @@ fn fit_paraboloid(around: &[(f32, f32)], radius: f32) -> (f32, f32) {
         });
         (0.5 * (low + high), high - low)
     };
-    if around.len() < 3 || radius == 0.0 {
+    if coordinates.len() < 3 || radius == 0.0 {
         return (deviation(0.0).0, 0.0);
     }
     // The range is convex in the half curvature: ternary search.
