@@ -37,10 +37,13 @@ fuzz_target!(|bytes: &[u8]| {
         points: PointCount::About(20),
         sign: [Sign::Auto, Sign::Winding, Sign::Generalized, Sign::Fill][usize::from(pick(0, 4))],
         density: [Density::Dense, Density::Sparse][usize::from(pick(2, 2))],
-        closest_points: [ClosestPoints::Exact, ClosestPoints::GradientWalk]
+        closest_points: [ClosestPoints::Exact, ClosestPoints::GradientDescent]
             [usize::from(pick(3, 2))],
-        encoding: [Encoding::Distances(None), Encoding::Layers, Encoding::Floats]
-            [usize::from(pick(4, 3))],
+        encoding: [
+            Encoding::Distances(None),
+            Encoding::Layers,
+            Encoding::Floats,
+        ][usize::from(pick(4, 3))],
         ..BuildOptions::default()
     };
     if let Ok(built) = build(&mesh, &options, &|_| ()) {

@@ -162,10 +162,10 @@ fn report(
             "layers, dense",
             &["--encoding", "layers", "--store", "dense"],
         ),
-        ("gradient walk, sparse", &["--closest", "walk"]),
+        ("gradient descent, sparse", &["--closest", "descent"]),
         (
-            "gradient walk, dense",
-            &["--closest", "walk", "--store", "dense"],
+            "gradient descent, dense",
+            &["--closest", "descent", "--store", "dense"],
         ),
     ] {
         let run = builder.run(

@@ -55,7 +55,7 @@ pub(crate) fn grid(mesh: &Mesh, options: &BuildOptions, points: f64) -> Result<G
     let voxels = dims.element_product();
     let has_table = options.density.is_dense(voxels)
         || options.encoding == Encoding::Layers
-        || options.closest_points == ClosestPoints::GradientWalk;
+        || options.closest_points == ClosestPoints::GradientDescent;
     let per_voxel = if has_table {
         BYTES_PER_VOXEL
     } else {

@@ -41,9 +41,9 @@ pub enum ClosestPoints {
     /// Among all triangles.
     #[default]
     Exact,
-    /// As in the paper: on the triangle closest to the surface voxel reached along the gradient of the
-    /// layered map.
-    GradientWalk,
+    /// As in the paper: on the triangle closest to the surface voxel reached by gradient descent in
+    /// the layered map.
+    GradientDescent,
 }
 
 /// Clustering of points.
@@ -51,9 +51,10 @@ pub enum ClosestPoints {
 pub enum Clustering {
     /// Top-down bisection across the principal axis. All clusters of a level have about as many points.
     #[default]
-    Halves,
-    /// As in the paper (section 2.1.2): the nearest K points, from the leaves up.
-    Nearest {
+    Bisect,
+    /// Bottom-up as in the paper (section 2.1.2): the nearest K points make a leaf, the nearest K
+    /// leaves a cluster, and so on.
+    BottomUp {
         /// Seed of the random first point.
         seed: u64,
     },

@@ -484,11 +484,11 @@ fn clusterings(table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
         &ground_options(Density::Dense),
     );
     let field = dense.voxelmap.trilinear();
-    table.line("## Clusters: halves, and the paper's nearest\n");
+    table.line("## Clusters: bisection, and the paper's bottom-up\n");
     table.line("The fine bunny on the dense map of the ground, 20 mm ahead.\n");
-    table.line("| query | spheres, halves | nearest | points, halves | nearest |");
+    table.line("| query | spheres, bisection | bottom-up | points, bisection | bottom-up |");
     table.line("|---|---|---|---|---|");
-    let trees = [Clustering::Halves, Clustering::Nearest { seed: 1 }].map(|clustering| {
+    let trees = [Clustering::Bisect, Clustering::BottomUp { seed: 1 }].map(|clustering| {
         let options = BuildOptions {
             clustering,
             ..bunny_options(PointCount::About(FINE))
@@ -496,7 +496,7 @@ fn clusterings(table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
         asset(bunny, &options).tree
     });
     for (name, what) in QUERIES {
-        let [halves, nearest] = trees.each_ref().map(|tree| {
+        let [bisect, bottom_up] = trees.each_ref().map(|tree| {
             let (shell, work) = (Shell::new(tree), Work::default());
             for pose in poses {
                 field.run(name, &shell, *pose, PREDICTION, Some(&work));
@@ -505,7 +505,7 @@ fn clusterings(table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
         });
         table.line(&format!(
             "| {what} | {:.0} | {:.0} | {:.0} | {:.0} |",
-            halves[0], nearest[0], halves[1], nearest[1]
+            bisect[0], bottom_up[0], bisect[1], bottom_up[1]
         ));
     }
     table.line("");

@@ -47,7 +47,7 @@ pub(crate) struct BuildArgs {
     #[arg(short = 'k', long, default_value_t = 4)]
     branching: u32,
     /// How points are put into clusters
-    #[arg(long, value_enum, default_value_t = ClusteringName::Halves)]
+    #[arg(long, value_enum, default_value_t = ClusteringName::Bisect)]
     clustering: ClusteringName,
     /// What the voxels hold
     #[arg(long, value_enum, default_value_t = EncodingName::Distances)]
@@ -64,7 +64,7 @@ pub(crate) struct BuildArgs {
     /// Which side of a face is the inside
     #[arg(long, value_enum, default_value_t = SignName::Auto)]
     sign: SignName,
-    /// Where clustering by the nearest starts
+    /// Seed of bottom-up clustering
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Most memory voxels and points may take while building, in MiB
@@ -83,10 +83,10 @@ pub(crate) struct BuildArgs {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum ClusteringName {
-    /// Cut in halves from the top down
-    Halves,
-    /// As in the paper, the nearest together from the leaves up
-    Nearest,
+    /// From the top down, by bisection across the principal axis
+    Bisect,
+    /// As in the paper, from the leaves up, the nearest K together
+    BottomUp,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -103,8 +103,8 @@ enum EncodingName {
 enum ClosestName {
     /// Among all triangles
     Exact,
-    /// As in the paper, along the gradient of the layers
-    Walk,
+    /// As in the paper, by gradient descent in the layers
+    Descent,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -153,8 +153,8 @@ impl BuildArgs {
             },
             branching: self.branching,
             clustering: match self.clustering {
-                ClusteringName::Halves => Clustering::Halves,
-                ClusteringName::Nearest => Clustering::Nearest { seed: self.seed },
+                ClusteringName::Bisect => Clustering::Bisect,
+                ClusteringName::BottomUp => Clustering::BottomUp { seed: self.seed },
             },
             encoding: match self.encoding {
                 EncodingName::Layers => Encoding::Layers,
@@ -163,7 +163,7 @@ impl BuildArgs {
             },
             closest_points: match self.closest {
                 ClosestName::Exact => ClosestPoints::Exact,
-                ClosestName::Walk => ClosestPoints::GradientWalk,
+                ClosestName::Descent => ClosestPoints::GradientDescent,
             },
             density: match self.store {
                 StoreName::Auto => Density::Auto,

@@ -61,7 +61,7 @@ impl<'a> ExactDistances<'a> {
 /// closest to its centre.
 ///
 /// Never too small. Too large by as much as a path along layers exceeds a straight one.
-pub(crate) fn by_gradient_walk(
+pub(crate) fn by_gradient_descent(
     mesh: &Mesh,
     bvh: &Bvh,
     grid: &Grid,
@@ -70,7 +70,7 @@ pub(crate) fn by_gradient_walk(
     let layers = layers(grid, classes);
     let [nx, ny, _] = grid.dims().map(|n| n as usize);
     let voxel = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)].map(|c| c as u32);
-    // The surface voxel at the end of each walk. Walks that meet continue as one.
+    // The surface voxel at the end of each descent. Paths that meet continue as one.
     let mut ends = vec![UNVISITED; grid.voxel_count()];
     let mut path = Vec::new();
     for start in 0..ends.len() {
@@ -116,7 +116,7 @@ pub(crate) fn by_gradient_walk(
     bytemuck::cast_vec(ends)
 }
 
-/// Not yet visited by a walk.
+/// Not yet visited by a descent.
 const UNVISITED: u32 = u32::MAX;
 
 /// The neighbour one layer lower that is closest to the direction of the gradient. The voxel must

@@ -3,7 +3,7 @@
 use vps_core::{Aabb, ErrorBounds, Grid, Store, Voxelmap};
 
 use super::curvature::curvature_bounds;
-use super::distance::{ExactDistances, by_gradient_walk};
+use super::distance::{ExactDistances, by_gradient_descent};
 use super::lattice::Source;
 use super::layers::layers;
 use super::quantize::Quantizer;
@@ -46,8 +46,8 @@ pub(crate) fn voxelmap(
                 .collect::<Vec<_>>();
             Source::Table(&table)
         }
-        (_, ClosestPoints::GradientWalk) => {
-            table = by_gradient_walk(mesh, bvh, &grid, classes);
+        (_, ClosestPoints::GradientDescent) => {
+            table = by_gradient_descent(mesh, bvh, &grid, classes);
             Source::Table(&table)
         }
         (_, ClosestPoints::Exact) => {

@@ -26,7 +26,7 @@ proptest! {
     #[test]
     fn the_solid_never_seems_further_than_it_is(
         mesh in mesh(), encoding in encoding(), density in density(),
-        walk in prop::bool::weighted(0.2), margin in 1..6_u32,
+        by_descent in prop::bool::weighted(0.2), margin in 1..6_u32,
         points in prop::collection::vec((vector(1.0), direction(), 0..3_usize), 300),
     ) {
         let options = BuildOptions {
@@ -35,7 +35,7 @@ proptest! {
             points: PointCount::About(10),
             encoding,
             density,
-            closest_points: if walk { ClosestPoints::GradientWalk } else { ClosestPoints::Exact },
+            closest_points: if by_descent { ClosestPoints::GradientDescent } else { ClosestPoints::Exact },
             ..BuildOptions::default()
         };
         let asset = build(&mesh, &options, &|_| ()).unwrap().asset;

@@ -15,8 +15,8 @@ use vps_core::{
 
 fn clustering() -> impl Strategy<Value = Clustering> {
     prop_oneof![
-        Just(Clustering::Halves),
-        any::<u64>().prop_map(|seed| Clustering::Nearest { seed }),
+        Just(Clustering::Bisect),
+        any::<u64>().prop_map(|seed| Clustering::BottomUp { seed }),
     ]
 }
 
@@ -60,7 +60,7 @@ proptest! {
     #[test]
     fn voxel_values_are_within_their_error(
         mesh in bumpy_mesh(), encoding in encoding(), is_dense in any::<bool>(),
-        walk in prop::bool::weighted(0.2),
+        by_descent in prop::bool::weighted(0.2),
         at in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 200),
     ) {
         let options = BuildOptions {
@@ -69,14 +69,14 @@ proptest! {
             points: PointCount::About(10),
             encoding,
             density: if is_dense { Density::Dense } else { Density::Sparse },
-            closest_points: if walk { ClosestPoints::GradientWalk } else { ClosestPoints::Exact },
+            closest_points: if by_descent { ClosestPoints::GradientDescent } else { ClosestPoints::Exact },
             ..BuildOptions::default()
         };
         let asset = build(&mesh, &options, &|_| ()).unwrap().asset;
         let map = &asset.voxelmap;
         prop_assert_eq!(map.store().is_dense(), is_dense);
         let error_bounds = map.error_bounds();
-        if !walk && encoding != Encoding::Layers && map.sigma() < 0.5 * map.grid().voxel_size() {
+        if !by_descent && encoding != Encoding::Layers && map.sigma() < 0.5 * map.grid().voxel_size() {
             prop_assert!(error_bounds.beyond <= 1.0001 * map.grid().voxel_size());
         }
         let dims = map.grid().dims();

@@ -57,8 +57,8 @@ pub(super) fn run(
         (Some((_, map)), _) => BuildOptions {
             encoding: map.encoding,
             density: map.density,
-            closest_points: if map.is_by_walk {
-                ClosestPoints::GradientWalk
+            closest_points: if map.is_by_descent {
+                ClosestPoints::GradientDescent
             } else {
                 ClosestPoints::Exact
             },

@@ -66,18 +66,18 @@ const VOXELMAPS: [(&str, Map); 8] = [
     ("floats_dense", Map::new(Encoding::Floats, Density::Dense)),
     ("layers_sparse", Map::new(Encoding::Layers, Density::Sparse)),
     ("layers_dense", Map::new(Encoding::Layers, Density::Dense)),
-    ("walk_sparse", Map::by_walk(Density::Sparse)),
-    ("walk_dense", Map::by_walk(Density::Dense)),
+    ("descent_sparse", Map::by_descent(Density::Sparse)),
+    ("descent_dense", Map::by_descent(Density::Dense)),
 ];
 
-/// Cases of pointshells by clustering; the seed of `nearest` is the number of the build.
-const SHELLS: [&str; 2] = ["halves", "nearest"];
+/// Cases of pointshells by clustering; the seed of `bottom_up` is the number of the build.
+const SHELLS: [&str; 2] = ["bisect", "bottom_up"];
 
 #[derive(Clone, Copy, Debug)]
 struct Map {
     encoding: Encoding,
     density: Density,
-    is_by_walk: bool,
+    is_by_descent: bool,
 }
 
 impl Map {
@@ -85,19 +85,19 @@ impl Map {
         Self {
             encoding,
             density,
-            is_by_walk: false,
+            is_by_descent: false,
         }
     }
 
     /// Whether every voxel has an exact distance to all triangles, which takes as long as
     /// everything else together.
     fn is_slow(&self) -> bool {
-        self.density == Density::Dense && self.encoding != Encoding::Layers && !self.is_by_walk
+        self.density == Density::Dense && self.encoding != Encoding::Layers && !self.is_by_descent
     }
 
-    const fn by_walk(density: Density) -> Self {
+    const fn by_descent(density: Density) -> Self {
         Self {
-            is_by_walk: true,
+            is_by_descent: true,
             ..Self::new(Encoding::Distances(None), density)
         }
     }
@@ -105,8 +105,8 @@ impl Map {
 
 fn clustering(case: &str, seed: u32) -> Option<Clustering> {
     match case {
-        "halves" => Some(Clustering::Halves),
-        "nearest" => Some(Clustering::Nearest { seed: seed.into() }),
+        "bisect" => Some(Clustering::Bisect),
+        "bottom_up" => Some(Clustering::BottomUp { seed: seed.into() }),
         _ => None,
     }
 }

@@ -61,7 +61,7 @@ fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
             "distances" => "distances, 16 bits",
             "floats" => "distances, 32-bit floats",
             "layers" => "layers, 16 bits",
-            "walk" => "distances by gradient walk, 16 bits",
+            "descent" => "distances by gradient descent, 16 bits",
             other => other,
         };
         let number = |column: &str| row.number(column);
@@ -87,8 +87,8 @@ fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
 /// The label of a clustering.
 fn clustering(case: &str) -> &str {
     match case {
-        "halves" => "halves, from the top",
-        "nearest" => "nearest K, from the leaves (section 2.1.2)",
+        "bisect" => "bisection, from the top",
+        "bottom_up" => "bottom-up, the nearest K from the leaves (section 2.1.2)",
         other => other,
     }
 }

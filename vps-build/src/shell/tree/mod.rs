@@ -31,8 +31,8 @@ pub(crate) fn build_tree(
     }
     // From the leaves up.
     let levels = match clustering {
-        Clustering::Halves => bisect::clusters(positions, branching),
-        Clustering::Nearest { seed } => bottom_up::clusters(positions, branching, seed),
+        Clustering::Bisect => bisect::clusters(positions, branching),
+        Clustering::BottomUp { seed } => bottom_up::clusters(positions, branching, seed),
     };
     assemble(samples, &levels)
 }
