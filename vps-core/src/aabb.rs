@@ -43,7 +43,7 @@ impl Aabb {
     ///
     /// Never false for a body that does lie within: it touches all six faces of its box, so along any
     /// direction it extends at least as far as the nearest corner of the furthest face.
-    pub fn may_hold(&self, body: &Self, to_this: &Pose3) -> bool {
+    pub fn may_contain(&self, body: &Self, to_this: &Pose3) -> bool {
         let half = body.extents() * 0.5;
         let center = to_this.transform_point(body.center());
         let axes = Mat3::from_quat(to_this.rotation);
@@ -101,7 +101,7 @@ mod tests {
             let is_within = points
                 .iter()
                 .all(|&p| bounds.contains(pose.transform_point(p)));
-            let may = bounds.may_hold(&body, &pose);
+            let may = bounds.may_contain(&body, &pose);
             assert!(may || !is_within);
             within += i32::from(is_within);
             refused += i32::from(!may);

@@ -195,11 +195,11 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
             second
                 .field
                 .bounds()
-                .may_hold(&first.tree.bounds(), &to_second)
+                .may_contain(&first.tree.bounds(), &to_second)
         } else {
             let to_first = &self.second_to_first;
             let bounds = first.field.bounds();
-            second_radius < first_radius && bounds.may_hold(&second.tree.bounds(), to_first)
+            second_radius < first_radius && bounds.may_contain(&second.tree.bounds(), to_first)
         };
         may_be_within.then_some(first_is_smaller)
     }

@@ -151,7 +151,7 @@ impl Edges {
             return;
         };
         // No point of the shell is near a surface that lies in the solid as a whole.
-        let min_width = if self.region.may_hold(&surface.bounds(), &self.pose) {
+        let min_width = if self.region.may_contain(&surface.bounds(), &self.pose) {
             f32::INFINITY
         } else {
             self.min_width

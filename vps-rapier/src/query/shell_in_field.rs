@@ -177,7 +177,7 @@ impl<'s> ShellInField<'s> {
             return false;
         };
         let solid = shape.asset().voxelmap.solid();
-        solid.may_hold(&self.tree.bounds(), &self.shell_to_field(pos12))
+        solid.may_contain(&self.tree.bounds(), &self.shell_to_field(pos12))
     }
 
     /// Whether the shell touches the solid, `pos12` being the pose of the second shape in the frame
