@@ -2,14 +2,14 @@
 //! With them a query bounds the field by a linear function (see [`vps_core::Voxelmap::new`]).
 
 use rayon::prelude::*;
-use vps_core::store::{CELL, cell_dims};
+use vps_core::store::{CELL_EDGE_VOXELS, cell_dims};
 use vps_core::{CURVATURE_STEPS, CURVATURE_UNKNOWN, Store};
 
 /// Largest distance from the surface, in voxels, with a known bound. Queries rarely look beyond.
 const MAX_DISTANCE: f32 = 24.0;
 
 /// Values along an edge of a cell, with one more voxel at each end.
-const EDGE: usize = CELL as usize + 2;
+const EDGE: usize = CELL_EDGE_VOXELS as usize + 2;
 
 /// The curvature bounds of a map, in steps of 1 / [`CURVATURE_STEPS`] voxels. A stored value is worth
 /// `sigma` voxels.
@@ -43,7 +43,8 @@ pub(crate) fn curvature_bounds(store: &Store<'_>, sigma: f32) -> Vec<u8> {
 
 fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
     let dims = store.dims();
-    let middle = [0, 1, 2].map(|a| (cell[a] * CELL + CELL / 2).min(dims[a] - 1));
+    let middle =
+        [0, 1, 2].map(|a| (cell[a] * CELL_EDGE_VOXELS + CELL_EDGE_VOXELS / 2).min(dims[a] - 1));
     if (store.value(middle) * sigma).abs() > MAX_DISTANCE {
         return CURVATURE_UNKNOWN;
     }
@@ -54,7 +55,7 @@ fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
             for (x, value) in row.iter_mut().enumerate() {
                 let local = [x, y, z];
                 let voxel = [0, 1, 2].map(|a| {
-                    let at = (cell[a] * CELL + local[a] as u32).saturating_sub(1);
+                    let at = (cell[a] * CELL_EDGE_VOXELS + local[a] as u32).saturating_sub(1);
                     at.min(dims[a] - 1)
                 });
                 *value = store.value(voxel);
@@ -66,7 +67,7 @@ fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
         for y in 1..EDGE - 1 {
             for x in 1..EDGE - 1 {
                 let local = [x, y, z];
-                let voxel = [0, 1, 2].map(|a| cell[a] * CELL + local[a] as u32 - 1);
+                let voxel = [0, 1, 2].map(|a| cell[a] * CELL_EDGE_VOXELS + local[a] as u32 - 1);
                 if (0..3).any(|a| voxel[a] >= dims[a]) {
                     continue;
                 }

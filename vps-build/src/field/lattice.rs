@@ -3,7 +3,7 @@
 use glamx::DVec3;
 use rayon::prelude::*;
 use vps_core::Grid;
-use vps_core::store::{CELL, cell_dims};
+use vps_core::store::{CELL_EDGE_VOXELS, cell_dims};
 
 use super::distance::ExactDistances;
 
@@ -46,7 +46,7 @@ impl Source<'_> {
         let rows: Vec<_> = (0..nz).flat_map(|z| (0..ny).map(move |y| (y, z))).collect();
         let row = |&(y, z): &(u32, u32)| {
             let mut guess = 0;
-            let mut at = |x| self.at(grid, [x, y, z].map(|c| c * CELL), &mut guess);
+            let mut at = |x| self.at(grid, [x, y, z].map(|c| c * CELL_EDGE_VOXELS), &mut guess);
             (0..nx).map(&mut at).collect::<Vec<_>>()
         };
         Lattice {
@@ -61,7 +61,7 @@ impl Lattice {
     pub(crate) fn largest(&self, voxel_size: f64) -> f64 {
         let largest = self.samples.iter().fold(0.0, |l: f64, s| l.max(s.0.abs()));
         // Half the diagonal of a cell.
-        largest + 0.8661 * f64::from(CELL) * voxel_size
+        largest + 0.8661 * f64::from(CELL_EDGE_VOXELS) * voxel_size
     }
 
     pub(super) fn corners(&self, cell: [u32; 3]) -> [Sample; 8] {

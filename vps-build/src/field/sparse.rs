@@ -3,7 +3,8 @@
 use glamx::DVec3;
 use rayon::prelude::*;
 use vps_core::store::{
-    BRICK_VALUES, CELL, CellGroup, MIDDLE_VALUES, RefinedCell, cell_dims, mark_plain,
+    BRICK_VALUES, CELL_EDGE_VOXELS, CellGroup, REFINED_CELL_VALUES, RefinedCell, cell_dims,
+    mark_coarse_neighbourhoods,
 };
 use vps_core::{Grid, Store, VoxelmapError};
 
@@ -45,10 +46,10 @@ pub(crate) fn sparse(
     values.extend(refined.iter().flatten().flat_map(|cell| cell.middle));
     let mut groups = Vec::new();
     let mut cells = Vec::new();
-    let mut first = 0;
+    let mut first_brick = 0;
     for sixty_four in refined.chunks(64) {
         let mut group = CellGroup {
-            before: cells.len() as u32,
+            rank: cells.len() as u32,
             ..CellGroup::default()
         };
         for (i, cell) in sixty_four.iter().enumerate() {
@@ -56,28 +57,28 @@ pub(crate) fn sparse(
             group.refined |= 1 << i;
             cells.push(RefinedCell {
                 bricks: cell.bricks,
-                first,
+                first_brick,
                 reserved: 0,
             });
-            first += cell.bricks.count_ones();
+            first_brick += cell.bricks.count_ones();
             values.extend(&cell.values);
         }
         groups.push(group);
     }
-    mark_plain(grid.dims(), &mut groups);
+    mark_coarse_neighbourhoods(grid.dims(), &mut groups);
     let values = quantizer.values(values);
     Store::sparse(grid.dims(), groups.into(), cells.into(), values)
 }
 
 /// The values of a refined cell.
 struct RefinedData {
-    middle: [f32; MIDDLE_VALUES],
+    middle: [f32; REFINED_CELL_VALUES],
     bricks: u64,
     values: Vec<f32>,
 }
 
 /// Samples along each edge of a cell, including those of the next cell.
-const SIDE: usize = CELL as usize + 1;
+const SIDE: usize = CELL_EDGE_VOXELS as usize + 1;
 
 /// A cell during refinement.
 struct Cell<'a> {
@@ -161,21 +162,21 @@ impl<'a> Cell<'a> {
 
     /// The values a cell needs of its own, or none if the lattice is accurate enough.
     fn refine(&mut self, cell: [u32; 3], lattice: [Sample; 8]) -> Option<RefinedData> {
-        self.first = cell.map(|c| c * CELL);
+        self.first = cell.map(|c| c * CELL_EDGE_VOXELS);
         for i in self.sampled.drain(..) {
             self.samples[i] = None;
         }
         for (i, sample) in lattice.into_iter().enumerate() {
-            let index = index(corner([0; 3], CELL, i));
+            let index = index(corner([0; 3], CELL_EDGE_VOXELS, i));
             self.samples[index] = Some(sample);
             self.sampled.push(index);
         }
-        let coarse = self.cube([0; 3], CELL);
-        if self.is_accurate(&coarse, [0; 3], CELL) {
+        let coarse = self.cube([0; 3], CELL_EDGE_VOXELS);
+        if self.is_accurate(&coarse, [0; 3], CELL_EDGE_VOXELS) {
             return None;
         }
-        let half = CELL / 2;
-        let mut middle = [0.0; MIDDLE_VALUES];
+        let half = CELL_EDGE_VOXELS / 2;
+        let mut middle = [0.0; REFINED_CELL_VALUES];
         for (i, value) in (0..).zip(&mut middle) {
             let at = [i % 3, i / 3 % 3, i / 9].map(|c| c * half);
             *value = self.quantizer.quantize(self.sample(at).0);

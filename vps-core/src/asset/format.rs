@@ -24,7 +24,7 @@
 //! | parameters | see below | 136 |
 //! | values v of the voxelmap, in the order of its [`Store`] | i16 or f32 | 2 or 4 |
 //! | curvature bounds, one for each cell of 8 x 8 x 8 voxels (see [`Voxelmap::new`]) | u8 | 1 |
-//! | groups of cells | a [`CellGroup`]: two times bits u64, refined before u32, zero u32 | 24 |
+//! | groups of cells | a [`CellGroup`]: two times bits u64, rank u32, zero u32 | 24 |
 //! | refined cells | a [`RefinedCell`]: bits u64, first brick u32, zero u32 | 16 |
 //! | points in metres, in the order of the leaves | 3 x f32 | 12 |
 //! | unit inward normals | 3 x f32 | 12 |

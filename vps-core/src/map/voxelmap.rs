@@ -6,7 +6,7 @@ use crate::aabb::Aabb;
 use crate::map::error::VoxelmapError;
 use crate::map::error_bounds::ErrorBounds;
 use crate::map::grid::Grid;
-use crate::map::store::{CELL, Store, product};
+use crate::map::store::{CELL_EDGE_VOXELS, Store, product};
 use crate::simd::{LANES, Voxels};
 use crate::storage::Storage;
 
@@ -139,7 +139,7 @@ impl<'a> Voxelmap<'a> {
             return unknown;
         }
         let cells = voxels
-            .blocks(CELL.ilog2() as i32)
+            .blocks(CELL_EDGE_VOXELS.ilog2() as i32)
             .linear(self.store.cell_dims());
         let mut steps = [0.0; LANES];
         for lane in 0..LANES {

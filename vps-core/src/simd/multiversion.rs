@@ -46,7 +46,9 @@ mod tests {
 
     use proptest::prelude::*;
 
-    use crate::store::{BRICK_VALUES, CellGroup, MIDDLE_VALUES, RefinedCell, mark_plain};
+    use crate::store::{
+        BRICK_VALUES, CellGroup, REFINED_CELL_VALUES, RefinedCell, mark_coarse_neighbourhoods,
+    };
     use crate::*;
 
     /// Whether only the target's instruction set is used.
@@ -115,12 +117,12 @@ mod tests {
             refined: random() & ((1 << 36) - 1),
             ..CellGroup::default()
         }];
-        mark_plain(dims, &mut groups);
+        mark_coarse_neighbourhoods(dims, &mut groups);
         let mut bricks = 0;
         let mut cell = || {
             let cell = RefinedCell {
                 bricks: random() & random(),
-                first: bricks,
+                first_brick: bricks,
                 reserved: 0,
             };
             bricks += cell.bricks.count_ones();
@@ -129,7 +131,7 @@ mod tests {
         let cells: Vec<_> = (0..groups[0].refined.count_ones())
             .map(|_| cell())
             .collect();
-        let stored = 4 * 4 * 5 + cells.len() * MIDDLE_VALUES + bricks as usize * BRICK_VALUES;
+        let stored = 4 * 4 * 5 + cells.len() * REFINED_CELL_VALUES + bricks as usize * BRICK_VALUES;
         let mut value = || (random() % 2000) as i16 - 1000;
         let sparse: Vec<_> = (0..stored).map(|_| value()).collect();
         let dense: Vec<_> = (0..20 * 17 * 30).map(|_| value()).collect();

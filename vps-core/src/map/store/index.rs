@@ -58,7 +58,7 @@ impl SparseIndex<'_> {
         }
         let brick_rank = (cell.bricks & (bit - 1)).count_ones();
         let within = ((z % 2) * 2 + y % 2) * 2 + x % 2;
-        Some(self.bricks_start + (cell.first + brick_rank) as usize * BRICK_VALUES + within)
+        Some(self.bricks_start + (cell.first_brick + brick_rank) as usize * BRICK_VALUES + within)
     }
 
     /// Whether neither this cell nor one of its next neighbours is refined.
@@ -78,6 +78,6 @@ impl SparseIndex<'_> {
             return None;
         }
         let rank_in_group = (group.refined & (bit - 1)).count_ones();
-        Some((group.before + rank_in_group) as usize)
+        Some((group.rank + rank_in_group) as usize)
     }
 }

@@ -3,10 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 
 /// Voxels along the edge of a cell of a sparse [`Store`](crate::Store).
-pub const CELL: u32 = 8;
+pub const CELL_EDGE_VOXELS: u32 = 8;
 
-/// Values of a refined cell: 3 along each edge, 4 voxels apart.
-pub const MIDDLE_VALUES: usize = 27;
+/// Values of a refined cell besides those of its bricks: 3 along each edge, 4 voxels apart.
+pub const REFINED_CELL_VALUES: usize = 27;
 
 /// Voxels in a brick: 2 along each edge.
 pub const BRICK_VALUES: usize = 8;
@@ -21,8 +21,8 @@ pub struct CellGroup {
     /// diagonally) is refined. All eight voxels around a point of the cell are then interpolated in
     /// the lattice.
     pub coarse_neighbourhood: u64,
-    /// Rank: the number of refined cells before this group.
-    pub before: u32,
+    /// The number of refined cells before this group.
+    pub rank: u32,
     /// Zero.
     pub reserved: u32,
 }
@@ -33,15 +33,15 @@ pub struct CellGroup {
 pub struct RefinedCell {
     /// Bit i is set if the i-th of its 4 x 4 x 4 bricks (x first, then y, then z) is stored.
     pub bricks: u64,
-    /// Rank: the number of stored bricks before those of this cell.
-    pub first: u32,
+    /// Index of its first brick: the number of stored bricks before those of this cell.
+    pub first_brick: u32,
     /// Zero.
     pub reserved: u32,
 }
 
 /// The number of cells along each axis.
 pub fn cell_dims(dims: [u32; 3]) -> [u32; 3] {
-    dims.map(|n| n.div_ceil(CELL))
+    dims.map(|n| n.div_ceil(CELL_EDGE_VOXELS))
 }
 
 /// The number of elements of an array. Saturates: no store has that many values.
@@ -54,7 +54,7 @@ pub(crate) fn product(dims: [u32; 3]) -> usize {
 ///
 /// # Panics
 /// If there are too few groups for all cells.
-pub fn mark_plain(dims: [u32; 3], groups: &mut [CellGroup]) {
+pub fn mark_coarse_neighbourhoods(dims: [u32; 3], groups: &mut [CellGroup]) {
     groups
         .iter_mut()
         .for_each(|group| group.coarse_neighbourhood = 0);

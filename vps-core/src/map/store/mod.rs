@@ -11,7 +11,8 @@ use wide::f32x4;
 use self::index::{Layout, SparseLayout};
 pub(crate) use self::layout::product;
 pub use self::layout::{
-    BRICK_VALUES, CELL, CellGroup, MIDDLE_VALUES, RefinedCell, cell_dims, mark_plain,
+    BRICK_VALUES, CELL_EDGE_VOXELS, CellGroup, REFINED_CELL_VALUES, RefinedCell, cell_dims,
+    mark_coarse_neighbourhoods,
 };
 use self::layout::{for_each_cell, has_coarse_neighbourhood, is_set, lattice_dims};
 use self::reader::Reader;
@@ -76,7 +77,7 @@ impl<'a> Store<'a> {
             let here = (cell_count - 64 * i).min(64);
             let beyond = if here == 64 { 0 } else { !0 << here };
             let bits = group.refined | group.coarse_neighbourhood;
-            if group.before as usize != refined || bits & beyond != 0 {
+            if group.rank as usize != refined || bits & beyond != 0 {
                 return Err(VoxelmapError::Cells);
             }
             refined += group.refined.count_ones() as usize;
@@ -91,13 +92,13 @@ impl<'a> Store<'a> {
         }
         let mut stored = 0_usize;
         for cell in cells.iter() {
-            if cell.first as usize != stored {
+            if cell.first_brick as usize != stored {
                 return Err(VoxelmapError::Cells);
             }
             stored += cell.bricks.count_ones() as usize;
         }
         let cells_start = product(lattice_dims(cell_dims));
-        let bricks_start = cells_start + refined * MIDDLE_VALUES;
+        let bricks_start = cells_start + refined * REFINED_CELL_VALUES;
         let layout = Layout::Sparse(SparseLayout {
             groups,
             cells,
@@ -233,7 +234,7 @@ mod tests {
             refined: 0b10_0010,
             ..CellGroup::default()
         }];
-        mark_plain(DIMS, &mut groups);
+        mark_coarse_neighbourhoods(DIMS, &mut groups);
         assert_eq!(groups[0].coarse_neighbourhood, 0b001000);
         let cells = vec![
             RefinedCell::default(),
@@ -320,18 +321,18 @@ mod tests {
                 Err(VoxelmapError::Cells)
             )
         };
-        let group = |refined, before| {
+        let group = |refined, rank| {
             let mut group = [CellGroup {
                 refined,
-                before,
+                rank,
                 ..CellGroup::default()
             }];
-            mark_plain(DIMS, &mut group);
+            mark_coarse_neighbourhoods(DIMS, &mut group);
             group[0]
         };
-        let cell = |bricks, first| RefinedCell {
+        let cell = |bricks, first_brick| RefinedCell {
             bricks,
-            first,
+            first_brick,
             reserved: 0,
         };
         assert!(!refused(vec![group(3, 0)], vec![cell(1, 0), cell(1, 1)]));

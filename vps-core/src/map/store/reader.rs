@@ -6,7 +6,8 @@ use wide::f32x4;
 
 use super::index::{Layout, SparseIndex};
 use super::layout::{
-    BRICK_VALUES, CELL, MIDDLE_VALUES, is_set, lattice_dims, linear_index, row_offsets,
+    BRICK_VALUES, CELL_EDGE_VOXELS, REFINED_CELL_VALUES, is_set, lattice_dims, linear_index,
+    row_offsets,
 };
 use super::trilinear::{TrilinearStencil, interpolated_point, interpolated_voxels};
 use super::value::StoredValue;
@@ -31,8 +32,8 @@ impl<T: StoredValue> Reader<'_, T> {
             Layout::Dense => self.get(linear_index(self.dims, voxel)),
             Layout::Sparse(sparse) => {
                 let index = sparse.index();
-                let cell = voxel.map(|c| c / CELL);
-                let local = voxel.map(|c| (c % CELL) as usize);
+                let cell = voxel.map(|c| c / CELL_EDGE_VOXELS);
+                let local = voxel.map(|c| (c % CELL_EDGE_VOXELS) as usize);
                 self.value_in_cell(index, cell, index.rank(cell), local)
             }
         }
@@ -98,15 +99,15 @@ impl<T: StoredValue> Reader<'_, T> {
         corners: Voxels,
         t: Vectors,
     ) -> Option<(f32x4, Vectors)> {
-        let cells = corners.blocks(CELL.ilog2() as i32);
+        let cells = corners.blocks(CELL_EDGE_VOXELS.ilog2() as i32);
         for cell in cells.linear(index.cell_dims) {
             if !is_set(index.groups[cell / 64].coarse_neighbourhood, cell) {
                 return None;
             }
         }
         let dims = lattice_dims(index.cell_dims);
-        let step = 1.0 / CELL as f32;
-        let within = corners.within(CELL as i32 - 1);
+        let step = 1.0 / CELL_EDGE_VOXELS as f32;
+        let within = corners.within(CELL_EDGE_VOXELS as i32 - 1);
         let (value, slope) =
             self.interpolated_in_array(cells, dims, within.plus(t).times(f32x4::splat(step)));
         Some((value, slope.times(f32x4::splat(step))))
@@ -146,19 +147,27 @@ impl<T: StoredValue> Reader<'_, T> {
     #[inline(always)]
     fn stencil(&self, index: SparseIndex<'_>, corner: [u32; 3]) -> Stencil<T::Pair> {
         let [x, y, z] = corner;
-        let cell = [x / CELL, y / CELL, z / CELL];
-        let local = [
-            (x % CELL) as usize,
-            (y % CELL) as usize,
-            (z % CELL) as usize,
+        let cell = [
+            x / CELL_EDGE_VOXELS,
+            y / CELL_EDGE_VOXELS,
+            z / CELL_EDGE_VOXELS,
         ];
-        let last = CELL as usize - 1;
+        let local = [
+            (x % CELL_EDGE_VOXELS) as usize,
+            (y % CELL_EDGE_VOXELS) as usize,
+            (z % CELL_EDGE_VOXELS) as usize,
+        ];
+        let last = CELL_EDGE_VOXELS as usize - 1;
         let crosses = [local[0] == last, local[1] == last, local[2] == last];
         let in_cell = !(crosses[0] | crosses[1] | crosses[2]);
         let rank = index.rank(cell);
         // The upper faces of a cell carry lattice values, so a cell reaches up to them.
         if index.has_coarse_neighbourhood(cell) || in_cell && rank.is_none() {
-            return Stencil::Coarse(self.lattice_corners(index, cell), local, 1.0 / CELL as f32);
+            return Stencil::Coarse(
+                self.lattice_corners(index, cell),
+                local,
+                1.0 / CELL_EDGE_VOXELS as f32,
+            );
         }
         if let Some(rank) = rank
             && in_cell
@@ -196,9 +205,12 @@ impl<T: StoredValue> Reader<'_, T> {
             }
             let rank = index.rank(own_cell);
             let (rows, size) = match rank {
-                None => (self.lattice_corners(index, own_cell), CELL as usize),
+                None => (
+                    self.lattice_corners(index, own_cell),
+                    CELL_EDGE_VOXELS as usize,
+                ),
                 Some(rank) => {
-                    let half = CELL as usize / 2;
+                    let half = CELL_EDGE_VOXELS as usize / 2;
                     let [x, y, z] = first.map(|l| l / half);
                     (self.octant_corners(index, rank, [x, y, z]), half)
                 }
@@ -234,7 +246,8 @@ impl<T: StoredValue> Reader<'_, T> {
                 return None;
             }
             let brick_rank = (cell.bricks & ((1 << (bricks + x / 2)) - 1)).count_ones();
-            let first = index.bricks_start + (cell.first + brick_rank) as usize * BRICK_VALUES;
+            let first =
+                index.bricks_start + (cell.first_brick + brick_rank) as usize * BRICK_VALUES;
             let within = first + ((z % 2) * 2 + y % 2) * 2 + x % 2;
             // The next value of this brick, or the first one of the same row of the next brick.
             let next = if x % 2 == 0 { 1 } else { BRICK_VALUES - 1 };
@@ -286,7 +299,7 @@ impl<T: StoredValue> Reader<'_, T> {
     ) -> f32 {
         let [x, y, z] = local;
         let Some(rank) = rank else {
-            let t = Vec3::new(x as f32, y as f32, z as f32) / CELL as f32;
+            let t = Vec3::new(x as f32, y as f32, z as f32) / CELL_EDGE_VOXELS as f32;
             return interpolated_point::<T>(self.lattice_corners(index, cell), t);
         };
         if let Some(position) = index.stored_value(rank, local) {
@@ -304,7 +317,7 @@ impl<T: StoredValue> Reader<'_, T> {
         rank: usize,
         [x, y, z]: [usize; 3],
     ) -> [T::Pair; 4] {
-        let first = index.cells_start + rank * MIDDLE_VALUES + (z * 3 + y) * 3 + x;
+        let first = index.cells_start + rank * REFINED_CELL_VALUES + (z * 3 + y) * 3 + x;
         let row = |offset| self.pair(first + offset);
         [row(0), row(3), row(9), row(12)]
     }

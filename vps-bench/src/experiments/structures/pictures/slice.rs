@@ -1,6 +1,6 @@
 //! A slice through the centre of the map, and its stored voxels.
 
-use vps_core::store::CELL;
+use vps_core::store::CELL_EDGE_VOXELS;
 use vps_core::{DistanceField, Store, Vec3, Voxelmap};
 
 use super::{Panels, Subject, TEXT};
@@ -60,7 +60,9 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
         let voxel = map.grid().voxel_at(point);
         let color = STORED[stored(map.store(), voxel) as usize].0;
         // Lines between cells, and the surface.
-        let is_edge = [0, 1].iter().any(|&axis| voxel[axis] % CELL == 0);
+        let is_edge = [0, 1]
+            .iter()
+            .any(|&axis| voxel[axis] % CELL_EDGE_VOXELS == 0);
         if field.penetration(point, Vec3::ZERO).abs() < 1.5 * line {
             colors::INK
         } else if is_edge {
@@ -96,17 +98,17 @@ fn stored(store: &Store<'_>, voxel: [u32; 3]) -> Stored {
     if groups.is_empty() {
         return Stored::All;
     }
-    let [nx, ny, _] = store.dims().map(|n| n.div_ceil(CELL));
-    let [x, y, z] = voxel.map(|c| c / CELL);
+    let [nx, ny, _] = store.dims().map(|n| n.div_ceil(CELL_EDGE_VOXELS));
+    let [x, y, z] = voxel.map(|c| c / CELL_EDGE_VOXELS);
     let cell = (z * ny + y) * nx + x;
     let (group, bit) = (&groups[cell as usize / 64], cell % 64);
     if group.refined >> bit & 1 == 0 {
         return Stored::Lattice;
     }
     let before = (group.refined & !(!0 << bit)).count_ones();
-    let [x, y, z] = voxel.map(|c| c % CELL / 2);
+    let [x, y, z] = voxel.map(|c| c % CELL_EDGE_VOXELS / 2);
     let brick = (z * 4 + y) * 4 + x;
-    if cells[(group.before + before) as usize].bricks >> brick & 1 == 1 {
+    if cells[(group.rank + before) as usize].bricks >> brick & 1 == 1 {
         Stored::All
     } else {
         Stored::Refined
