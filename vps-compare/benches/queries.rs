@@ -448,8 +448,8 @@ fn listed<F: DistanceField, W: vps_core::CountWork>(
     let mut segment = 0;
     let (mut deepest, mut sum) = (0.0_f32, 0.0);
     query.for_each_contact(|contact| {
-        if contact.point as usize >= ends[segment] {
-            segment += ends[segment..].partition_point(|&end| end <= contact.point as usize);
+        if contact.point_index as usize >= ends[segment] {
+            segment += ends[segment..].partition_point(|&end| end <= contact.point_index as usize);
             sum += deepest;
             deepest = 0.0;
         }

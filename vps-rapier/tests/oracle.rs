@@ -87,15 +87,15 @@ proptest! {
         let rounding = 1e-5;
         let over = found.penetration - exact[deepest];
         let what = || format!("{} in {}: {over} m over {}", shell.name, field.name, exact[deepest]);
-        prop_assert!(over <= sampled.error_bound_at(at(found.point as usize)) + rounding, "{}", what());
+        prop_assert!(over <= sampled.error_bound_at(at(found.point_index as usize)) + rounding, "{}", what());
         prop_assert!(-over <= sampled.error_bound_at(at(deepest)) + rounding, "{}", what());
         // Each contact by itself.
         let mut off: Option<(u32, f32, f32)> = None;
         Query::new(tree, &sampled, pose).for_each_contact(|contact| {
-            let error = (contact.penetration - exact[contact.point as usize]).abs();
-            let bound = sampled.error_bound_at(at(contact.point as usize)) + rounding;
+            let error = (contact.penetration - exact[contact.point_index as usize]).abs();
+            let bound = sampled.error_bound_at(at(contact.point_index as usize)) + rounding;
             if error > bound {
-                off = Some((contact.point, error, bound));
+                off = Some((contact.point_index, error, bound));
             }
         });
         prop_assert_eq!(off, None, "{}", what());

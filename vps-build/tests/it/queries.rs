@@ -42,7 +42,7 @@ fn wrench_of(
     for c in contacts.iter().filter(|c| c.penetration > 0.0) {
         let weight = match weight {
             Weight::Point => 1.0,
-            Weight::Area => f64::from(shell.tree.area(c.point as usize)),
+            Weight::Area => f64::from(shell.tree.area(c.point_index as usize)),
         };
         let f = c.normal.as_dvec3() * f64::from(c.penetration) * weight;
         force += f;
@@ -105,7 +105,7 @@ fn check_query<F: DistanceField + ?Sized>(
     for i in 0..tree.point_count() {
         let at = pose.transform_point(tree.point(i));
         let alone = field.penetration(at, pose.rotation * tree.normal(i));
-        if let Some(c) = expected.next_if(|c| c.point as usize == i) {
+        if let Some(c) = expected.next_if(|c| c.point_index as usize == i) {
             // Where the field jumps between voxels, rounding of the position may decide.
             let off = (alone - c.penetration).abs();
             prop_assert!(
@@ -128,7 +128,9 @@ fn check_query<F: DistanceField + ?Sized>(
         let mut expected = Vec::new();
         for (segment, cluster) in tree.level(level).iter().enumerate() {
             let below = tree.points_below(level, cluster);
-            let own = flat.iter().filter(|c| below.contains(&(c.point as usize)));
+            let own = flat
+                .iter()
+                .filter(|c| below.contains(&(c.point_index as usize)));
             expected.extend(deepest(own).map(|c| (segment as u32, c)));
         }
         prop_assert_eq!(found, expected);
@@ -147,7 +149,7 @@ fn check_query<F: DistanceField + ?Sized>(
 
     check_manifold::<_, 5>(&query, field, pose, prediction, &flat)?;
     let manifold = query.manifold::<5>();
-    let deep = query.deepest().map_or(u32::MAX, |c| c.point);
+    let deep = query.deepest().map_or(u32::MAX, |c| c.point_index);
     for hint in [0, tree.point_count() as u32 / 2, deep] {
         let hinted = query.with_hint(hint);
         prop_assert_eq!(hinted.touches(), query.touches());
@@ -185,7 +187,7 @@ fn check_linear_wrench<F: DistanceField + ?Sized>(
         let normal = (rotation.transpose() * -gradient).as_dvec3();
         let weight = match weight {
             Weight::Point => 1.0,
-            Weight::Area => f64::from(shell.tree.area(c.point as usize)),
+            Weight::Area => f64::from(shell.tree.area(c.point_index as usize)),
         };
         let arm = (c.position - center).as_dvec3();
         let f = weight * f64::from(c.penetration) * normal;
@@ -321,7 +323,7 @@ proptest! {
         let (before_all, after_all) = (contacts(&before), contacts(&after));
         for (these, those) in [(&before_all, &after_all), (&after_all, &before_all)] {
             for c in these.iter().filter(|c| c.penetration > tolerance) {
-                let same = those.iter().find(|d| d.point == c.point);
+                let same = those.iter().find(|d| d.point_index == c.point_index);
                 prop_assert!(same.is_some_and(|d| (d.penetration - c.penetration).abs() < tolerance));
             }
         }

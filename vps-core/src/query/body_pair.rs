@@ -60,7 +60,7 @@ pub struct PairContact {
     /// The body whose shell it was found with.
     pub shell: Side,
     /// Index of the point in that shell.
-    pub point: u32,
+    pub point_index: u32,
     /// Its position in metres in the frame of the first body.
     pub position: Vec3,
     /// Unit direction in which the first body is pushed, in its frame; the second is pushed in the
@@ -220,7 +220,7 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     fn first_contact(&self, contact: &Contact) -> PairContact {
         PairContact {
             shell: Side::First,
-            point: contact.point,
+            point_index: contact.point_index,
             position: contact.position,
             push: contact.normal,
             penetration: contact.penetration,
@@ -230,7 +230,7 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
     fn second_contact(&self, contact: &Contact) -> PairContact {
         PairContact {
             shell: Side::Second,
-            point: contact.point,
+            point_index: contact.point_index,
             position: self.second_to_first.transform_point(contact.position),
             push: -(self.second_to_first.rotation * contact.normal),
             penetration: contact.penetration,

@@ -8,7 +8,7 @@ use crate::shell::PointSphereTree;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Index of the point in the shell.
-    pub point: u32,
+    pub point_index: u32,
     /// Its position P in metres in the shell frame.
     pub position: Vec3,
     /// Its unit inward normal n in the shell frame: the direction in which the shell's body
@@ -24,7 +24,7 @@ impl Contact {
     #[inline(always)]
     pub(crate) fn of(tree: &PointSphereTree<'_>, point: u32, penetration: f32) -> Self {
         Self {
-            point,
+            point_index: point,
             position: tree.point(point as usize),
             normal: tree.normal(point as usize),
             penetration,
@@ -37,7 +37,7 @@ impl Contact {
     pub(crate) fn is_deeper_than(&self, other: Option<&Self>) -> bool {
         other.is_none_or(|other| {
             self.penetration > other.penetration
-                || self.penetration == other.penetration && self.point < other.point
+                || self.penetration == other.penetration && self.point_index < other.point_index
         })
     }
 }

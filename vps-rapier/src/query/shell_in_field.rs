@@ -342,7 +342,7 @@ impl<'s> ShellInField<'s> {
         let (position, normal) = (self.tree.point(index), self.tree.normal(index));
         let (at, turned) = (pose.transform_point(position), pose.rotation * normal);
         let contact = Contact {
-            point,
+            point_index: point,
             position,
             normal,
             penetration: with_field!(self, &pose, 0.0, field => field.penetration(at, turned)),
@@ -468,7 +468,7 @@ impl<'s> ShellInField<'s> {
         }
         let on_field = in_field - inward * contact.penetration;
         let out_of_shell = shell_to_field.rotation.inverse() * inward;
-        let point = PackedFeatureId::vertex(contact.point);
+        let point = PackedFeatureId::vertex(contact.point_index);
         let shell_normal = if self.shell_is_first {
             -contact.normal
         } else {

@@ -17,8 +17,8 @@ pub(super) fn reduce<const N: usize>(
     if contacts.len() <= 1 {
         return;
     }
-    let numbered = (0..).zip(&*contacts).map(|(point, c)| Contact {
-        point,
+    let numbered = (0..).zip(&*contacts).map(|(point_index, c)| Contact {
+        point_index,
         position: c.points[0],
         normal: c.normals[0],
         penetration: c.penetration,
@@ -26,14 +26,14 @@ pub(super) fn reduce<const N: usize>(
     let numbered: Vec<Contact> = numbered.collect();
     let by_depth = |a: &Contact, b: &Contact| {
         let order = a.penetration.total_cmp(&b.penetration);
-        order.then(b.point.cmp(&a.point))
+        order.then(b.point_index.cmp(&a.point_index))
     };
     let Some(deepest) = numbered.iter().copied().max_by(by_depth) else {
         return;
     };
     let selected = ContactManifold::<N>::reduce(&numbered, deepest.normal, prediction, approach);
     let selected = selected.contacts().iter();
-    *contacts = selected.map(|c| contacts[c.point as usize]).collect();
+    *contacts = selected.map(|c| contacts[c.point_index as usize]).collect();
 }
 
 /// Keeps the first [`MAX_CONTACTS_PER_NORMAL`] contacts of each normal.

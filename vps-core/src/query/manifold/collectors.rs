@@ -53,7 +53,8 @@ impl<const N: usize> BestCandidate<'_, N> {
         let score = score * self.polygon.normal_weight(contact.normal);
         let is_better = match &self.found {
             Some(best) => {
-                score > self.threshold || score == self.threshold && contact.point < best.point
+                score > self.threshold
+                    || score == self.threshold && contact.point_index < best.point_index
             }
             None => score >= self.threshold,
         };

@@ -42,7 +42,7 @@ pub struct ContactManifold<const N: usize> {
 impl<const N: usize> ContactManifold<N> {
     const EMPTY: Self = Self {
         contacts: [Contact {
-            point: 0,
+            point_index: 0,
             position: Vec3::ZERO,
             normal: Vec3::ZERO,
             penetration: 0.0,
@@ -124,9 +124,9 @@ mod tests {
 
     use super::*;
 
-    fn contact(point: u32, x: f32, z: f32, penetration: f32) -> Contact {
+    fn contact(point_index: u32, x: f32, z: f32, penetration: f32) -> Contact {
         Contact {
-            point,
+            point_index,
             position: Vec3::new(x, 0.0, z),
             normal: Vec3::Y,
             penetration,
@@ -135,7 +135,7 @@ mod tests {
 
     fn picked<const N: usize>(contacts: &[Contact]) -> Vec<u32> {
         let manifold = ContactManifold::<N>::reduce(contacts, Vec3::Y, 0.1, Approach::RESTING);
-        manifold.contacts().iter().map(|c| c.point).collect()
+        manifold.contacts().iter().map(|c| c.point_index).collect()
     }
 
     #[test]
@@ -183,7 +183,7 @@ mod tests {
         ];
         let second = |contacts: &[Contact], approach| {
             let manifold = ContactManifold::<2>::reduce(contacts, Vec3::Y, 0.1, approach);
-            manifold.contacts()[1].point
+            manifold.contacts()[1].point_index
         };
         assert_eq!(
             [0.0, 0.01, 0.1].map(|m| second(&contacts, Approach::Moved(m))),

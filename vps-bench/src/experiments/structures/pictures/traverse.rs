@@ -188,7 +188,7 @@ mod tests {
         let seen = Traversal::of(&asset.tree, &ground, pose);
         let mut expected = Vec::new();
         let query = Query::new(&asset.tree, &ground, pose);
-        query.for_each_contact_flat(|contact| expected.push(contact.point as usize));
+        query.for_each_contact_flat(|contact| expected.push(contact.point_index as usize));
         let found: Vec<_> = seen.points.iter().filter(|p| p.1).map(|p| p.0).collect();
         assert_eq!(found, expected);
         assert!(!found.is_empty() && seen.points.len() < asset.tree.point_count());
