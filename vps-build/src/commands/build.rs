@@ -280,11 +280,11 @@ fn thin_walls(walls: &ThinWalls, voxel_size: f32, is_auto: bool) -> String {
     let Some(enough) = walls.sufficient_voxel_m else {
         return String::new();
     };
-    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
-    let lost = if walls.lost_share > 0.0 {
+    let percent = |fraction: f64| format!("{:.2} %", 100.0 * fraction);
+    let lost = if walls.lost_fraction > 0.0 {
         format!(
             "; of {} of the surface the middle of the wall is outside",
-            percent(walls.lost_share)
+            percent(walls.lost_fraction)
         )
     } else {
         String::new()
@@ -297,7 +297,7 @@ fn thin_walls(walls: &ThinWalls, voxel_size: f32, is_auto: bool) -> String {
     format!(
         "thin walls: {} of the surface stands for walls thinner than a voxel of {voxel_size:.6} \
          m{lost}: --voxel-size {enough:.3e} would do{remark}\n",
-        percent(walls.share),
+        percent(walls.fraction),
     )
 }
 
@@ -324,8 +324,8 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         closed_holes,
         added_faces,
         hidden_faces,
-        united,
-        left_overlapping,
+        merged,
+        still_overlapping,
         left_open: _,
     } = *repairs;
     let mut done = Vec::new();
@@ -345,10 +345,10 @@ fn sign(name: SignName, repairs: &Repairs) -> String {
         &format!("{{}} hole(s) closed with {added_faces} faces"),
     );
     add(hidden_faces, "{} face(s) within the solid removed");
-    if united {
+    if merged {
         done.push("parts that overlap or touch joined".into());
     }
-    if left_overlapping {
+    if still_overlapping {
         done.push("parts overlap still, depths near faces within the solid are too small".into());
     }
     if done.is_empty() {
@@ -399,10 +399,10 @@ fn summary_json(
         "added_faces": repairs.added_faces,
         "hidden_faces": repairs.hidden_faces,
         "left_open": repairs.left_open,
-        "united": repairs.united,
-        "left_overlapping": repairs.left_overlapping,
-        "thin_share": thin_walls.share,
-        "lost_share": thin_walls.lost_share,
+        "merged": repairs.merged,
+        "still_overlapping": repairs.still_overlapping,
+        "thin_fraction": thin_walls.fraction,
+        "lost_fraction": thin_walls.lost_fraction,
         "sufficient_voxel_m": thin_walls.sufficient_voxel_m,
         "seconds": seconds,
     })

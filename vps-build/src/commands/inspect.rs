@@ -71,7 +71,7 @@ fn mesh_rows(args: &InspectArgs) -> Result<Vec<Row>, Error> {
     } else {
         ""
     };
-    let thin_remark = if health.thin_share > 0.0 {
+    let thin_remark = if health.thin_fraction > 0.0 {
         "choose smaller voxels, or expect walls to be filled"
     } else {
         ""
@@ -119,7 +119,7 @@ fn mesh_rows(args: &InspectArgs) -> Result<Vec<Row>, Error> {
         ("area_m2", json!(health.area_m2), ""),
         ("volume_m3", json!(health.volume_m3), volume_remark),
         ("voxel_size_m", json!(voxel_size), ""),
-        ("thin_share", json!(health.thin_share), thin_remark),
+        ("thin_fraction", json!(health.thin_fraction), thin_remark),
     ])
 }
 

@@ -35,8 +35,8 @@ pub struct Health {
     pub volume_m3: f64,
     /// Extents of the bounding box in metres.
     pub extents_m: [f64; 3],
-    /// Share of the surface, from 0 to 1, with a wall behind it thinner than a voxel.
-    pub thin_share: f64,
+    /// Fraction of the surface, from 0 to 1, with a wall behind it thinner than a voxel.
+    pub thin_fraction: f64,
 }
 
 impl Health {
@@ -92,7 +92,7 @@ impl Health {
             area_m2: mesh.area(),
             volume_m3: mesh.volume(),
             extents_m: (high - low).to_array(),
-            thin_share: ThinWalls::sampled(mesh, &Bvh::new(mesh), 0.0..voxel_size).share,
+            thin_fraction: ThinWalls::sampled(mesh, &Bvh::new(mesh), 0.0..voxel_size).fraction,
         }
     }
 
@@ -121,7 +121,7 @@ mod tests {
         assert!(health.is_watertight());
         assert_eq!((health.components, health.boundary_loops), (1, 0));
         assert!((health.volume_m3 - 6.0).abs() < 1e-9 && (health.area_m2 - 22.0).abs() < 1e-9);
-        assert_eq!((health.thin_share, health.degenerate_faces), (0.0, 0));
+        assert_eq!((health.thin_fraction, health.degenerate_faces), (0.0, 0));
     }
 
     #[test]
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn thin_walls_are_noticed() {
         let plate = Mesh::cuboid([1.0, 0.01, 1.0]).unwrap();
-        assert!(Health::of(&plate, 0.02).thin_share > 0.9);
-        assert!(Health::of(&plate, 0.005).thin_share == 0.0);
+        assert!(Health::of(&plate, 0.02).thin_fraction > 0.9);
+        assert!(Health::of(&plate, 0.005).thin_fraction == 0.0);
     }
 }

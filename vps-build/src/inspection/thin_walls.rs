@@ -13,21 +13,21 @@ use crate::shell::spacing::spacing_for;
 use crate::solid::self_contact::gap_tolerance;
 use crate::spatial::bvh::Bvh;
 
-/// Share of a surface with walls thinner than a voxel.
+/// Fraction of a surface with walls thinner than a voxel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ThinWalls {
-    /// Share of the surface, from 0 to 1, with a wall behind it thinner than a voxel.
-    pub share: f64,
-    /// Share of the surface, from 0 to 1, with a wall behind it whose middle the voxelmap has
+    /// Fraction of the surface, from 0 to 1, with a wall behind it thinner than a voxel.
+    pub fraction: f64,
+    /// Fraction of the surface, from 0 to 1, with a wall behind it whose middle the voxelmap has
     /// outside.
-    pub lost_share: f64,
+    pub lost_fraction: f64,
     /// Voxel size in metres at which the middle of such walls, except the thinnest twentieth, keeps
     /// at least half of its depth. None without thin walls.
     pub sufficient_voxel_m: Option<f64>,
 }
 
-/// Share of thin walls that may be thinner still: sharp edges have no thickness at their tip.
-const NEGLECTED_SHARE: f64 = 0.05;
+/// Fraction of thin walls that may be thinner still: sharp edges have no thickness at their tip.
+const NEGLECTED_FRACTION: f64 = 0.05;
 
 /// Least cosine between the normals of the two sides of a wall, reversed: 25 degrees.
 const PARALLEL_COSINE: f64 = 0.9;
@@ -75,11 +75,11 @@ impl ThinWalls {
         let mut passed = 0.0;
         let enough = thin.iter().find(|(_, area)| {
             passed += area;
-            passed > NEGLECTED_SHARE * thin_area
+            passed > NEGLECTED_FRACTION * thin_area
         });
         Self {
-            share: thin_area / total,
-            lost_share: lost / total,
+            fraction: thin_area / total,
+            lost_fraction: lost / total,
             sufficient_voxel_m: enough.map(|(wall, _)| 0.5 * wall.thickness),
         }
     }
@@ -141,7 +141,7 @@ mod tests {
     fn a_plate_is_thin_below_its_thickness() {
         let plate = Mesh::cuboid([1.0, 0.01, 1.0]).unwrap();
         let thin = of(&plate, 0.02);
-        assert!((thin.share - 2.0 / 2.04).abs() < 1e-9, "{thin:?}");
+        assert!((thin.fraction - 2.0 / 2.04).abs() < 1e-9, "{thin:?}");
         let enough = thin.sufficient_voxel_m.unwrap();
         assert!((enough - 0.005).abs() < 1e-5, "{enough}");
         assert_eq!(of(&plate, 0.009), ThinWalls::default());

@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(apart.parts().len(), 2);
         assert!(!apart.contains(DVec3::X * 1.5));
         let one = of_two(0.5);
-        assert!(one.repairs().united);
+        assert!(one.repairs().merged);
         // In both balls, and deep in what they are together.
         let depth = one.penetration(DVec3::X * 0.25, 0).penetration_m;
         assert!((depth - 0.94).abs() < 0.05, "{depth}");

@@ -52,7 +52,7 @@ pub(crate) struct Solid<'m> {
 }
 
 /// Memory per triangle while the union of parts is computed, in bytes.
-const BYTES_PER_UNITED: u64 = 2000;
+const BYTES_PER_MERGED: u64 = 2000;
 
 /// The solid that the mesh means, on a grid.
 ///
@@ -85,7 +85,7 @@ pub(crate) fn solid<'m>(
         found = Layout::Overlapping;
     }
     let triangles = surface.triangles().len();
-    let needed = triangles as u64 * BYTES_PER_UNITED;
+    let needed = triangles as u64 * BYTES_PER_MERGED;
     if needed > memory_limit {
         return Err(BuildError::UnionMemory {
             triangles,
@@ -96,14 +96,14 @@ pub(crate) fn solid<'m>(
     match union(&surface, found) {
         Ok(boundary) if encloses_sheet(&boundary) => Err(BuildError::NotSolid),
         Ok(boundary) => {
-            repairs.united = true;
+            repairs.merged = true;
             let boundary = with_sheets(boundary, &surface, grid)?;
             let (classes, _) = VoxelClasses::by_winding(&boundary, grid);
             Ok(closed(Cow::Owned(boundary), classes, repairs))
         }
         Err(NoUnion::Empty) => Err(BuildError::NotSolid),
         Err(NoUnion::Failed) => {
-            repairs.left_overlapping = true;
+            repairs.still_overlapping = true;
             let (classes, _) = VoxelClasses::by_winding(&surface, grid);
             let scanlines = ScanlineIndex::new(&surface);
             let in_solid = |p| scanlines.winding(p, |_| true) >= 1;

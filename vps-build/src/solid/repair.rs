@@ -29,10 +29,10 @@ pub struct Repairs {
     /// Faces removed as they were inside the solid.
     pub hidden_faces: usize,
     /// Whether parts overlapped or touched and were replaced by the boundary of their union.
-    pub united: bool,
+    pub merged: bool,
     /// Whether parts still overlap because their union failed. Depths near faces within the solid
     /// are then too small.
-    pub left_overlapping: bool,
+    pub still_overlapping: bool,
     /// Whether holes were left open and generalised winding numbers decided what is inside.
     pub left_open: bool,
 }

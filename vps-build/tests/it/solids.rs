@@ -136,7 +136,7 @@ fn a_cavity_stays_hollow_and_an_inner_part_is_swallowed() {
     let hollow = built(&together(&outer, &turned(&inner)), Sign::Winding);
     assert!(hollow.repairs.is_none());
     let solid = built(&together(&outer, &inner), Sign::Winding);
-    assert!(solid.repairs.united);
+    assert!(solid.repairs.merged);
     let filled = built(&together(&outer, &turned(&inner)), Sign::Fill);
     assert_eq!(filled.repairs.hidden_faces, inner.triangles().len());
     let at_center = |built: &Built| {
@@ -171,7 +171,7 @@ fn overlapping_parts_are_one_solid() {
     let a = Mesh::cuboid([1.0, 0.4, 0.4]).unwrap();
     let b = Mesh::cuboid([0.4, 1.0, 0.4 - 1e-3]).unwrap();
     let built = built(&together(&a, &b), Sign::Winding);
-    assert!(built.repairs.united);
+    assert!(built.repairs.merged);
     let map = &built.asset.voxelmap;
     let center = map.center_penetration(map.grid().voxel_at(vps_core::Vec3::ZERO));
     // The inner walls would be 0.2 m away, too, but not along the arms.
@@ -356,8 +356,12 @@ fn parts_joined_across_rounding_have_points_and_no_thin_walls() {
             ..options(Sign::Auto)
         };
         let built = build(&both, &options, &|_| ()).unwrap();
-        assert!(built.repairs.united);
-        assert!(built.thin_walls.lost_share < 1e-3, "{:?}", built.thin_walls);
+        assert!(built.repairs.merged);
+        assert!(
+            built.thin_walls.lost_fraction < 1e-3,
+            "{:?}",
+            built.thin_walls
+        );
     }
 }
 
