@@ -57,8 +57,8 @@ fn turned(mesh: &Mesh, axis: DVec3, angle: f64) -> Mesh {
 static SOLIDS: LazyLock<Vec<Solid>> = LazyLock::new(|| {
     let askew = DVec3::new(1.0, 2.0, -0.5);
     vec![
-        solid("frame", models::frame(0.1)),
-        solid("askew frame", turned(&models::frame(0.08), askew, 0.8)),
+        solid("frame", models::cube_frame(0.1)),
+        solid("askew frame", turned(&models::cube_frame(0.08), askew, 0.8)),
         solid("window", models::window(0.08)),
         solid("askew window", turned(&models::window(0.03), askew, 2.1)),
         solid("torus", models::torus(32)),

@@ -30,12 +30,12 @@ pub enum MeshError {
     NoTriangles,
     /// A vertex that triangles use is NaN, infinite, or further from the origin than
     /// [`Mesh::LARGEST`].
-    #[error("vertex {vertex} (counted from 0) {}", position_fault(*place).unwrap_or_default())]
+    #[error("vertex {vertex} (counted from 0) {}", position_fault(*position).unwrap_or_default())]
     Vertex {
         /// The vertex.
         vertex: usize,
         /// Its position in metres.
-        place: DVec3,
+        position: DVec3,
     },
     /// A triangle refers to a vertex that is not there.
     #[error(
@@ -58,11 +58,11 @@ pub enum MeshError {
 }
 
 /// Why a vertex cannot be at a position, if it cannot.
-pub(crate) fn position_fault(place: DVec3) -> Option<&'static str> {
-    if !place.is_finite() {
+pub(crate) fn position_fault(position: DVec3) -> Option<&'static str> {
+    if !position.is_finite() {
         return Some("is not finite");
     }
-    let is_far = place.abs().max_element() > Mesh::LARGEST;
+    let is_far = position.abs().max_element() > Mesh::LARGEST;
     is_far.then_some("is further from the origin than any solid: coordinates reach up to 1e15")
 }
 
@@ -90,10 +90,10 @@ impl Mesh {
                 });
             }
             for &v in corners {
-                let place = vertices[v as usize];
-                if position_fault(place).is_some() {
+                let position = vertices[v as usize];
+                if position_fault(position).is_some() {
                     let vertex = v as usize;
-                    return Err(MeshError::Vertex { vertex, place });
+                    return Err(MeshError::Vertex { vertex, position });
                 }
             }
         }

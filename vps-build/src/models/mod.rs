@@ -13,12 +13,12 @@ use std::f64::consts::{PI, TAU};
 
 use glamx::{DVec2, DVec3};
 
-mod frames;
+mod blocks;
 mod parts;
 mod screw;
 mod sweep;
 
-pub use frames::{frame, window};
+pub use blocks::{cube_frame, window};
 pub use parts::{link, peg};
 pub use screw::{Thread, bolt, nut};
 

@@ -11,7 +11,7 @@ use crate::support::{cases, density, direction, encoding, vector};
 /// Bars, plates, and strands that wind around each other.
 fn mesh() -> impl Strategy<Value = Mesh> {
     prop_oneof![
-        (0.05..0.3_f64).prop_map(models::frame),
+        (0.05..0.3_f64).prop_map(models::cube_frame),
         (0.05..0.3_f64).prop_map(models::window),
         Just(models::torus(24)),
         Just(models::trefoil_knot(48)),

@@ -1,11 +1,11 @@
-//! Solids of blocks: an open cube and a window.
+//! Solids of blocks: the frame of a cube, and a window.
 
 use glamx::DVec3;
 
 use crate::mesh::Mesh;
 
-/// The twelve edges of an open cube of 1 m, as square bars of `bar` metres, from 0.01 to 0.4.
-pub fn frame(bar: f64) -> Mesh {
+/// The frame of a cube of 1 m: its twelve edges as square bars of `bar` metres, from 0.01 to 0.4.
+pub fn cube_frame(bar: f64) -> Mesh {
     let planes = planes(bar);
     blocks([planes; 3], |cell| {
         cell.iter().filter(|&&c| c != 1).count() >= 2
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn frames_and_windows_are_closed_and_have_their_volume() {
         for bar in [0.05, 0.2] {
-            let mesh = frame(bar);
+            let mesh = cube_frame(bar);
             // Twelve bars between the corners, and eight corners.
             let volume = 12.0 * bar * bar * (1.0 - 2.0 * bar) + 8.0 * bar.powi(3);
             close(volume_of(&mesh, 5), volume, 1e-9);
