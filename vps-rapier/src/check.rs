@@ -9,12 +9,12 @@ use crate::shape::VpsShape;
 
 /// A collider has a VPS shape, and the narrow phase has no dispatcher for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NoDispatcher(
+pub struct MissingDispatcher(
     /// The first such collider.
     pub ColliderHandle,
 );
 
-impl std::fmt::Display for NoDispatcher {
+impl std::fmt::Display for MissingDispatcher {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self(collider) = self;
         write!(
@@ -25,7 +25,7 @@ impl std::fmt::Display for NoDispatcher {
     }
 }
 
-impl std::error::Error for NoDispatcher {}
+impl std::error::Error for MissingDispatcher {}
 
 /// Checks that the VPS shapes of a world meet other shapes, for the start of a program or a test.
 /// rapier is silent about pairs its narrow phase cannot answer. Costs a query for each VPS shape.
@@ -35,18 +35,18 @@ impl std::error::Error for NoDispatcher {}
 ///
 /// let world = PhysicsWorld { narrow_phase: vps_rapier::narrow_phase(), ..PhysicsWorld::default() };
 /// vps_rapier::check(&world.narrow_phase, &world.colliders)?;
-/// # Ok::<(), vps_rapier::NoDispatcher>(())
+/// # Ok::<(), vps_rapier::MissingDispatcher>(())
 /// ```
 ///
 /// # Errors
 /// When a collider has a VPS shape, alone or in a compound, and the narrow phase does not support it or
 /// asks another dispatcher before ours.
-pub fn check(narrow_phase: &NarrowPhase, colliders: &ColliderSet) -> Result<(), NoDispatcher> {
+pub fn check(narrow_phase: &NarrowPhase, colliders: &ColliderSet) -> Result<(), MissingDispatcher> {
     for (handle, collider) in colliders.iter() {
         if let Some(shape) = vps_shape_in(collider.shape())
             && !meets_meshes(narrow_phase, shape)
         {
-            return Err(NoDispatcher(handle));
+            return Err(MissingDispatcher(handle));
         }
     }
     Ok(())

@@ -71,7 +71,7 @@ mod workspace;
 use rapier3d::geometry::NarrowPhase;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 
-pub use check::{NoDispatcher, check};
+pub use check::{MissingDispatcher, check};
 #[cfg(feature = "debug-render")]
 pub use debug_render::debug_render;
 pub use dispatcher::VpsDispatcher;
@@ -84,7 +84,7 @@ pub use shape::{Role, VpsShape};
 #[cfg(feature = "serde")]
 pub use snapshot::Snapshot;
 #[cfg(feature = "serde")]
-pub use snapshot::saved_shapes::SavedShapes;
+pub use snapshot::shape_snapshot::ShapeSnapshot;
 
 /// A narrow phase with the default [`VpsDispatcher`] before parry's own. Without it VPS shapes collide
 /// with nothing, see [`check`].

@@ -9,7 +9,7 @@ use support::asset;
 use vps_build::Mesh;
 use vps_rapier::rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use vps_rapier::rapier3d::prelude::*;
-use vps_rapier::{NoDispatcher, VpsDispatcher, VpsShape, check, narrow_phase};
+use vps_rapier::{MissingDispatcher, VpsDispatcher, VpsShape, check, narrow_phase};
 
 /// Keeps the logged messages.
 struct Log(Mutex<Vec<String>>);
@@ -44,7 +44,7 @@ fn a_world_without_our_dispatcher_is_found_out() {
     let above = RigidBodyBuilder::dynamic().translation(Vector::Y * 0.3);
     let (_, first) = world.insert(above.clone(), ColliderBuilder::new(block));
     let error = check(&world.narrow_phase, &world.colliders).unwrap_err();
-    assert_eq!(error, NoDispatcher(first));
+    assert_eq!(error, MissingDispatcher(first));
     assert!(
         error.to_string().contains("vps_rapier::narrow_phase()"),
         "{error}"
@@ -60,12 +60,12 @@ fn a_world_without_our_dispatcher_is_found_out() {
     let behind = DefaultQueryDispatcher.chain(VpsDispatcher::default());
     world.narrow_phase = NarrowPhase::with_query_dispatcher(behind);
     let error = check(&world.narrow_phase, &world.colliders).unwrap_err();
-    assert_eq!(error, NoDispatcher(first));
+    assert_eq!(error, MissingDispatcher(first));
     // A part of a compound is enough.
     let mut world = PhysicsWorld::default();
     let (_, second) = world.insert(above, ColliderBuilder::new(compound));
     let error = check(&world.narrow_phase, &world.colliders).unwrap_err();
-    assert_eq!(error, NoDispatcher(second));
+    assert_eq!(error, MissingDispatcher(second));
     world.narrow_phase = narrow_phase();
     assert_eq!(check(&world.narrow_phase, &world.colliders), Ok(()));
     world.step();

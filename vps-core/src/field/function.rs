@@ -18,7 +18,7 @@ use crate::field::distance_field::DistanceField;
 #[derive(Clone, Copy, Debug)]
 pub struct FieldFn<F> {
     penetration: F,
-    steepness: f32,
+    lipschitz: f32,
     bounds: Aabb,
     error_bound: f32,
 }
@@ -26,19 +26,19 @@ pub struct FieldFn<F> {
 impl<F: Fn(Vec3) -> f32> FieldFn<F> {
     /// `penetration` in metres, positive inside of the solid, which lies in `bounds`.
     ///
-    /// `steepness` is its Lipschitz constant: 1 for a signed distance, more for an approximation.
+    /// `lipschitz` is its Lipschitz constant: 1 for a signed distance, more for an approximation.
     /// `error_bound` is its largest error near the surface, in metres.
     ///
     /// # Panics
-    /// If the steepness is not positive and finite, or the error negative.
-    pub fn new(penetration: F, steepness: f32, bounds: Aabb, error_bound: f32) -> Self {
+    /// If the Lipschitz constant is not positive and finite, or the error negative.
+    pub fn new(penetration: F, lipschitz: f32, bounds: Aabb, error_bound: f32) -> Self {
         assert!(
-            steepness > 0.0 && steepness.is_finite() && error_bound >= 0.0,
-            "a steepness must be positive, an error not negative: {steepness}, {error_bound}"
+            lipschitz > 0.0 && lipschitz.is_finite() && error_bound >= 0.0,
+            "a Lipschitz constant must be positive and finite, an error not negative: {lipschitz}, {error_bound}"
         );
         Self {
             penetration,
-            steepness,
+            lipschitz,
             bounds,
             error_bound,
         }
@@ -63,7 +63,7 @@ impl<F: Fn(Vec3) -> f32> DistanceField for FieldFn<F> {
     }
 
     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32 {
-        (self.penetration)(center) + self.steepness * radius
+        (self.penetration)(center) + self.lipschitz * radius
     }
 
     fn bounds(&self) -> Aabb {

@@ -1,13 +1,13 @@
-//! Worlds with VPS shapes in files: a whole world, or the shapes of its colliders ([`saved_shapes`]).
+//! Worlds with VPS shapes in files: a whole world, or the shapes of its colliders ([`shape_snapshot`]).
 
 mod exchange;
-pub(crate) mod saved_shapes;
+pub(crate) mod shape_snapshot;
 
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 
-use self::saved_shapes::SavedShapes;
+use self::shape_snapshot::ShapeSnapshot;
 use crate::dispatcher::VpsDispatcher;
 use crate::shape::builder::ShapeError;
 
@@ -33,14 +33,14 @@ use crate::shape::builder::ShapeError;
 #[derive(Serialize, Deserialize)]
 pub struct Snapshot {
     world: PhysicsWorld,
-    shapes: SavedShapes,
+    shapes: ShapeSnapshot,
 }
 
 impl Snapshot {
     /// Takes a snapshot of a world, which is not changed.
     pub fn of(world: &PhysicsWorld) -> Self {
         let mut colliders = world.colliders.clone();
-        let shapes = SavedShapes::take_out(&mut colliders, &world.bodies);
+        let shapes = ShapeSnapshot::take_out(&mut colliders, &world.bodies);
         let world = PhysicsWorld {
             gravity: world.gravity,
             integration_parameters: world.integration_parameters,

@@ -17,7 +17,7 @@ use crate::shape::{Role, VpsShape};
 /// The VPS shapes of colliders, for programs that save the parts of a world separately; see
 /// [`Snapshot`](crate::Snapshot).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct SavedShapes {
+pub struct ShapeSnapshot {
     assets: Vec<SavedAsset>,
     shapes: Vec<SavedShape>,
 }
@@ -39,7 +39,7 @@ struct SavedShape {
     role: Role,
 }
 
-impl SavedShapes {
+impl ShapeSnapshot {
     /// Replaces each VPS shape by a small ball. rapier does not see that as a change.
     pub fn take_out(colliders: &mut ColliderSet, bodies: &RigidBodySet) -> Self {
         let mut saved = Self::default();
