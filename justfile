@@ -51,8 +51,8 @@ test-with seed:
     # Worlds in double precision, on several threads with wide vectors and in files, and the same on
     # every machine.
     cargo test --locked -p vps-rapier --no-default-features --features f64,serde,debug-render --tests
-    cargo test --locked -p vps-rapier --features serde,debug-render,rapier3d/parallel,rapier3d/simd8 --test shapes --test switches --test snapshots --test looks
-    cargo test --locked -p vps-rapier --features rapier3d/enhanced-determinism --test switches
+    cargo test --locked -p vps-rapier --features serde,debug-render,rapier3d/parallel,rapier3d/simd8 --test shapes --test rapier_options --test snapshots --test debug_rendering
+    cargo test --locked -p vps-rapier --features rapier3d/enhanced-determinism --test rapier_options
 
 # The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
 no-std:

@@ -1,6 +1,6 @@
 //! Tests of the whole builder.
 
-mod far;
+mod distances;
 mod files;
 mod invariants;
 mod queries;
