@@ -15,7 +15,7 @@ pub trait CollisionAlgorithm {
 pub enum PrepareError {
     /// Hull or parts have no volume.
     #[error("the {0} of the mesh has no volume")]
-    Flat(&'static str),
+    NoVolume(&'static str),
     /// No parts were found.
     #[error("convex decomposition gives no part with a volume")]
     NoParts,

@@ -12,13 +12,15 @@ pub struct Contacts {
 impl Contacts {
     /// The number of points in all manifolds and the deepest penetration in metres, negative if
     /// nothing touches yet; `None` without a point.
-    pub fn summary(&self) -> (usize, Option<f32>) {
-        summary(self.manifolds.iter())
+    pub fn count_and_deepest(&self) -> (usize, Option<f32>) {
+        count_and_deepest(self.manifolds.iter())
     }
 }
 
 /// The number of points in manifolds and their deepest penetration in metres.
-pub fn summary<'m>(manifolds: impl Iterator<Item = &'m ContactManifold>) -> (usize, Option<f32>) {
+pub fn count_and_deepest<'m>(
+    manifolds: impl Iterator<Item = &'m ContactManifold>,
+) -> (usize, Option<f32>) {
     let points = manifolds.flat_map(|m| m.points.iter());
     points.fold((0, None), |(count, deepest), point| {
         let depth = -point.dist;

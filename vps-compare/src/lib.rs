@@ -30,7 +30,7 @@ pub use algorithm::{CollisionAlgorithm, PrepareError};
 pub use algorithms::{
     AssetSource, ConvexDecomposition, ConvexHull, Trimesh, Voxels, Vps, VpsGround,
 };
-pub use contacts::{Contacts, summary};
+pub use contacts::{Contacts, count_and_deepest};
 pub use memory::Memory;
 pub use prepared::{Dispatcher, Prepared, Size};
 pub use scene::{Ground, Scene};

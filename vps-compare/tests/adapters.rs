@@ -58,7 +58,7 @@ fn all_find_a_ball_on_a_box() {
         for height in [0.5, 0.25, 0.205, 0.199, 0.19] {
             let pose = Pose::translation(0.05, height, 0.0);
             prepared.query(&pose, 0.01, &mut contacts).unwrap();
-            let (count, deepest) = contacts.summary();
+            let (count, deepest) = contacts.count_and_deepest();
             let exact = oracle.penetration(&pose, 0.1);
             if exact < -0.02 {
                 assert!(deepest.is_none_or(|d| d < 0.0), "algorithm {i} at {height}");
@@ -120,7 +120,7 @@ fn all_find_a_ball_on_a_ball() {
             let pose = Pose::translation(0.0, 0.6 * distance, 0.8 * distance);
             let mut contacts = Contacts::default();
             prepared.query(&pose, 0.02, &mut contacts).unwrap();
-            let deepest = contacts.summary().1;
+            let deepest = contacts.count_and_deepest().1;
             if distance > 0.3 {
                 assert_eq!(deepest, None, "algorithm {i}");
             } else {

@@ -17,8 +17,8 @@ impl CollisionAlgorithm for ConvexHull {
     fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
         parry_pair(scene, |mesh| {
             let points = support_points(&single(mesh.vertices()));
-            let flat = PrepareError::Flat("convex hull");
-            let shape = SharedShape::convex_hull(&points).ok_or(flat)?;
+            let no_volume = PrepareError::NoVolume("convex hull");
+            let shape = SharedShape::convex_hull(&points).ok_or(no_volume)?;
             let hull = shape.as_convex_polyhedron();
             let vertices = hull.map_or(0, |hull| hull.points().len());
             Ok((shape, vec![("vertices", vertices)]))

@@ -48,7 +48,7 @@ impl Voxels {
         let centers = filled.voxels().iter().map(|v| filled.get_voxel_point(v));
         let centers: Vec<_> = centers.collect();
         if centers.is_empty() {
-            return Err(PrepareError::Flat("voxels"));
+            return Err(PrepareError::NoVolume("voxels"));
         }
         let shape = ParryVoxels::from_points(Vector::splat(voxel_size as f32), &centers);
         Ok((SharedShape::new(shape), vec![("voxels", centers.len())]))

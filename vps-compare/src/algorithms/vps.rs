@@ -48,8 +48,8 @@ impl CollisionAlgorithm for Vps<'_> {
             VpsGround::Voxelmap(options) | VpsGround::Asset(options, _) => {
                 Some(match scene.ground {
                     Ground::Cuboid(extents) => {
-                        let flat = |_| PrepareError::Flat("ground");
-                        asset(&Mesh::cuboid(extents).map_err(flat)?, options)?
+                        let no_volume = |_| PrepareError::NoVolume("ground");
+                        asset(&Mesh::cuboid(extents).map_err(no_volume)?, options)?
                     }
                     Ground::Mesh(mesh) => asset(mesh, options)?,
                 })

@@ -2,7 +2,7 @@
 
 use rapier3d::math::Pose;
 use serde::Serialize;
-use vps_compare::oracle::Exact;
+use vps_compare::oracle::ExactPenetration;
 
 use super::candidate::Candidate;
 use super::problem::Problem;
@@ -75,7 +75,7 @@ impl Row {
     fn of(
         number: usize,
         pose: &Pose,
-        exact: Option<&Exact>,
+        exact: Option<&ExactPenetration>,
         problem: &Problem,
         algorithm: String,
         result: Result<QueryResult, String>,
@@ -84,7 +84,7 @@ impl Row {
         let result = result.ok();
         let penetration_m = result.as_ref().and_then(|a| a.penetration_m);
         let certain = exact.filter(|exact| problem.is_certain(exact));
-        let error = |(found, exact): (f64, &Exact)| (found - exact.penetration_m).abs();
+        let error = |(found, exact): (f64, &ExactPenetration)| (found - exact.penetration_m).abs();
         Self {
             pose: number,
             x_m: pose.translation.x,
@@ -108,7 +108,11 @@ impl Row {
 }
 
 impl Answer {
-    fn of(penetration_m: Option<f64>, certain: Option<&Exact>, tolerance_m: f64) -> Self {
+    fn of(
+        penetration_m: Option<f64>,
+        certain: Option<&ExactPenetration>,
+        tolerance_m: f64,
+    ) -> Self {
         let Some(exact) = certain else {
             return Self::Unknown;
         };

@@ -3,22 +3,22 @@
 mod args;
 mod candidate;
 mod catch_panic;
+mod comparison;
 mod measure;
 mod poses;
 mod prepare;
 mod problem;
 mod progress;
-mod summary;
 mod table;
 mod worker;
 
 pub(crate) use args::Args;
 
 use candidate::Candidate;
+use comparison::Comparison;
 use measure::measure;
 use problem::Problem;
 use progress::Progress;
-use summary::Summary;
 
 /// The error that ends the command: one line for people.
 type Error = Box<dyn std::error::Error>;
@@ -46,11 +46,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Error> {
         let bytes = writer.into_inner().map_err(|e| e.into_error())?;
         vps_build::write_atomically(path, &bytes)?;
     }
-    let summary = Summary::of(args, &problem, &candidates, &rows);
+    let comparison = Comparison::of(args, &problem, &candidates, &rows);
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
+        println!("{}", serde_json::to_string_pretty(&comparison)?);
     } else {
-        print!("{}", table::text(&summary));
+        print!("{}", table::text(&comparison));
     }
     Ok(())
 }

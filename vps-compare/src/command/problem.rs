@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rapier3d::math::Pose;
 use vps_build::{ExactSolid, Mesh, read_mesh};
-use vps_compare::oracle::{Exact, SolidOracle};
+use vps_compare::oracle::{ExactPenetration, SolidOracle};
 
 use super::args::Args;
 use super::progress::Progress;
@@ -21,7 +21,7 @@ pub(super) struct Problem {
     pub(super) prediction_m: f64,
     pub(super) tolerance_m: f64,
     /// Poses of B in the frame of A, with the exact penetration if neither mesh is open.
-    pub(super) poses: Vec<(Pose, Option<Exact>)>,
+    pub(super) poses: Vec<(Pose, Option<ExactPenetration>)>,
     /// Uncertainty of the exact penetration if its search ended, in metres.
     pub(super) exact_tolerance_m: f64,
     /// Whether A and B were left open, so that no penetration is exact.
@@ -83,7 +83,7 @@ impl Problem {
     }
 
     /// Whether an exact penetration is exact enough to measure errors by.
-    pub(super) fn is_certain(&self, exact: &Exact) -> bool {
+    pub(super) fn is_certain(&self, exact: &ExactPenetration) -> bool {
         exact.uncertainty_m <= self.tolerance_m.max(self.exact_tolerance_m)
     }
 }

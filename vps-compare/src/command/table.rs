@@ -1,8 +1,8 @@
-//! The summary for people.
+//! The comparison as text, for people.
 
 use std::fmt::Write;
 
-use super::summary::{AlgorithmSummary, MeshSummary, Summary};
+use super::comparison::{AlgorithmSummary, Comparison, MeshSummary};
 
 const HEADER: [&str; 10] = [
     "algorithm",
@@ -17,29 +17,29 @@ const HEADER: [&str; 10] = [
     "wrong",
 ];
 
-pub(super) fn text(summary: &Summary) -> String {
+pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = String::new();
-    for (name, mesh) in [("A", &summary.mesh_a), ("B", &summary.mesh_b)] {
+    for (name, mesh) in [("A", &comparison.mesh_a), ("B", &comparison.mesh_b)] {
         let _ = writeln!(text, "{name}: {}", of_mesh(mesh));
     }
     let _ = writeln!(
         text,
         "{} poses, {} overlapping, {} apart; prediction {:.3e} m, tolerance {:.3e} m\n",
-        summary.poses,
-        summary.overlapping,
-        summary.apart,
-        summary.prediction_m,
-        summary.tolerance_m,
+        comparison.poses,
+        comparison.overlapping,
+        comparison.apart,
+        comparison.prediction_m,
+        comparison.tolerance_m,
     );
-    if let Some(why) = &summary.inexact {
+    if let Some(why) = &comparison.inexact {
         let _ = writeln!(
             text,
             "The exact penetration is known at {} of {} poses: {why}. Errors and wrong answers are \
              counted where it is known\n",
-            summary.exact, summary.poses,
+            comparison.exact, comparison.poses,
         );
     }
-    let rows: Vec<_> = summary.algorithms.iter().map(cells).collect();
+    let rows: Vec<_> = comparison.algorithms.iter().map(cells).collect();
     let widths: Vec<usize> = (0..HEADER.len())
         .map(|c| {
             let cells = rows.iter().map(|row| row[c].chars().count());
@@ -62,7 +62,7 @@ pub(super) fn text(summary: &Summary) -> String {
     for row in &rows {
         line(row);
     }
-    for algorithm in summary.algorithms.iter().filter(|a| a.status != "ok") {
+    for algorithm in comparison.algorithms.iter().filter(|a| a.status != "ok") {
         let AlgorithmSummary {
             algorithm: name,
             answered,
@@ -72,10 +72,10 @@ pub(super) fn text(summary: &Summary) -> String {
         let _ = writeln!(
             text,
             "{name}: {answered} of {} answered: {status}",
-            summary.poses
+            comparison.poses
         );
     }
-    let uncertain = summary
+    let uncertain = comparison
         .exact_uncertainty_m
         .map_or_else(String::new, |most| {
             format!("; the exact one is uncertain by up to {most:.1e} m")

@@ -91,14 +91,14 @@ fn query(prepared: &Prepared, request: &QueryRequest, repeat: u32) -> Result<Que
     let (pose, prediction) = (request.pose(), request.prediction_m as f32);
     let begin = Instant::now();
     let mut least: Option<Duration> = None;
-    let mut summary = (0, None);
+    let mut count_and_deepest = (0, None);
     for turn in 0..=repeat {
         let mut contacts = Contacts::default();
         let start = Instant::now();
         let result = prepared.query(&pose, prediction, &mut contacts);
         let took = start.elapsed();
         result.map_err(|_| "unsupported".to_owned())?;
-        summary = contacts.summary();
+        count_and_deepest = contacts.count_and_deepest();
         let is_long = begin.elapsed() > PATIENCE;
         if turn > 0 || is_long {
             least = Some(least.map_or(took, |l| l.min(took)));
@@ -107,7 +107,7 @@ fn query(prepared: &Prepared, request: &QueryRequest, repeat: u32) -> Result<Que
             break;
         }
     }
-    let (contacts, penetration) = summary;
+    let (contacts, penetration) = count_and_deepest;
     if let Some(p) = penetration.filter(|p| !p.is_finite()) {
         return Err(format!("the penetration is {p}"));
     }

@@ -9,4 +9,4 @@ mod surface_distance;
 mod triangle_distance;
 
 pub use plane::PlaneOracle;
-pub use solid::{Exact, SolidOracle};
+pub use solid::{ExactPenetration, SolidOracle};

@@ -15,10 +15,10 @@ impl PlaneOracle {
     /// An oracle for a mesh.
     ///
     /// # Errors
-    /// When the mesh is flat.
+    /// When the mesh has no volume.
     pub fn new(mesh: &Mesh) -> Result<Self, PrepareError> {
-        let flat = |_| PrepareError::Flat("convex hull");
-        let (hull, _) = try_convex_hull(&single(mesh.vertices())).map_err(flat)?;
+        let no_volume = |_| PrepareError::NoVolume("convex hull");
+        let (hull, _) = try_convex_hull(&single(mesh.vertices())).map_err(no_volume)?;
         Ok(Self { hull })
     }
 

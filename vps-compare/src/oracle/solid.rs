@@ -28,7 +28,7 @@ pub struct SolidOracle {
 
 /// An exact penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exact {
+pub struct ExactPenetration {
     /// In metres, positive when the solids overlap.
     pub penetration_m: f64,
     /// How much larger the true value may be, in metres; finite. More than the
@@ -70,10 +70,10 @@ impl SolidOracle {
     }
 
     /// The penetration for a pose of the body in the ground's frame.
-    pub fn penetration(&self, body_in_ground: &Pose) -> Exact {
+    pub fn penetration(&self, body_in_ground: &Pose) -> ExactPenetration {
         let pose = to_double(body_in_ground);
         if let Some(distance) = self.distance(&pose) {
-            return Exact {
+            return ExactPenetration {
                 penetration_m: -distance,
                 uncertainty_m: 0.0,
             };
@@ -84,7 +84,7 @@ impl SolidOracle {
             search.deepest_point(&self.ground, &self.body.solid, &pose.inverse()),
         ];
         let bound = bounds[0].max(bounds[1]);
-        Exact {
+        ExactPenetration {
             penetration_m: search.deepest(),
             uncertainty_m: (bound - search.deepest()).max(0.0),
         }

@@ -181,7 +181,7 @@ impl Settings {
                 size,
                 sample,
                 time_us,
-                contacts: contacts.summary().0 as f64,
+                contacts: contacts.count_and_deepest().0 as f64,
             });
         }
         Ok(())

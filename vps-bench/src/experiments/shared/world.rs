@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use rapier3d::prelude::*;
-use vps_compare::{Dispatcher, summary};
+use vps_compare::{Dispatcher, count_and_deepest};
 
 use crate::harness::timed_dispatcher::{QueryTimes, Stopwatch, TimedDispatcher};
 
@@ -68,7 +68,7 @@ impl World {
     /// penetration.
     pub(crate) fn contacts(&self) -> (usize, Option<f32>) {
         let pairs = self.physics.narrow_phase.contact_pairs();
-        summary(pairs.flat_map(|pair| pair.solver_manifolds().iter()))
+        count_and_deepest(pairs.flat_map(|pair| pair.solver_manifolds().iter()))
     }
 
     /// Steps once and returns the times of the queries.

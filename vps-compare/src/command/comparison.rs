@@ -10,9 +10,9 @@ use super::candidate::Candidate;
 use super::measure::{Answer, Row};
 use super::problem::Problem;
 
-/// The summary the command prints.
+/// The result of the command: the problem, and a summary of each algorithm.
 #[derive(Serialize)]
-pub(super) struct Summary {
+pub(super) struct Comparison {
     pub(super) version: &'static str,
     pub(super) mesh_a: MeshSummary,
     pub(super) mesh_b: MeshSummary,
@@ -74,7 +74,7 @@ pub(super) struct AlgorithmSummary {
     pub(super) false_touches: usize,
 }
 
-impl Summary {
+impl Comparison {
     pub(super) fn of(
         args: &Args,
         problem: &Problem,
