@@ -60,6 +60,6 @@ pub use options::{
     BuildOptions, ClosestPoints, Clustering, DENSE_VOXELS, Density, Encoding, PointCount,
     Resolution, Sign,
 };
-pub use pipeline::{Built, Stage, build};
+pub use pipeline::{BuildOutput, Stage, build};
 pub use solid::exact::{ExactSolid, Penetration};
 pub use solid::repair::Repairs;

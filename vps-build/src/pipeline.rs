@@ -34,7 +34,7 @@ pub enum Stage {
 
 /// An asset, the repairs of its mesh, and its thin walls.
 #[derive(Clone, Debug)]
-pub struct Built {
+pub struct BuildOutput {
     /// Voxelmap, pointshell, tree and mass properties.
     pub asset: Asset<'static>,
     /// Repairs that made a solid of the mesh.
@@ -53,7 +53,7 @@ pub fn build(
     mesh: &Mesh,
     options: &BuildOptions,
     on_stage: &dyn Fn(Stage),
-) -> Result<Built, BuildError> {
+) -> Result<BuildOutput, BuildError> {
     if options.branching < 2 {
         return Err(BuildError::Branching(options.branching));
     }
@@ -87,7 +87,7 @@ pub fn build(
     let points: Vec<_> = samples.positions.iter().copied().zip(areas).collect();
     let voxel_size = f64::from(grid.voxel_size());
     let thin_walls = ThinWalls::of(&solid.mesh, &bvh, &points, 0.0..voxel_size, Some(&voxelmap));
-    Ok(Built {
+    Ok(BuildOutput {
         asset: Asset {
             origin: origin.to_array(),
             voxelmap,

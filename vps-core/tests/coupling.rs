@@ -14,7 +14,7 @@ fn vector(size: f32) -> impl Strategy<Value = Vec3> {
 }
 
 fn pose(size: f32, angle: f32) -> impl Strategy<Value = Pose3> {
-    (vector(size), vector(angle)).prop_map(|(way, turn)| Pose3::new(way, turn))
+    (vector(size), vector(angle)).prop_map(|(displacement, turn)| Pose3::new(displacement, turn))
 }
 
 /// From 10^`low` to 10^`high`.
@@ -305,8 +305,8 @@ proptest! {
             contact.translational = Mat3::from_diagonal(Vec3::splat(predicted));
             coupling.step(Pose3::identity(), contact, DT).unwrap();
         }
-        let way = coupling.pose().translation.length();
-        prop_assert!(way < 1e-3, "{way} m");
+        let displacement = coupling.pose().translation.length();
+        prop_assert!(displacement < 1e-3, "{displacement} m");
     }
 }
 
@@ -449,8 +449,8 @@ fn felt_in_sliding(
     let depth = 1.0 / coupling.options().stiffness;
     let mut felt = Vec3::ZERO;
     for cycle in 0..600 {
-        let way = 1e-4 * (cycle as f32 - 200.0).max(0.0);
-        let device = start.translation + Vec3::new(way, -depth, 0.0);
+        let displacement = 1e-4 * (cycle as f32 - 200.0).max(0.0);
+        let device = start.translation + Vec3::new(displacement, -depth, 0.0);
         let pose = coupling.pose();
         let contact = Query::new(tree, ground, pose).linear_wrench(tool.center, Weight::Area);
         let contact = (contact * stiffness).rotated(pose.rotation);
@@ -503,14 +503,15 @@ fn check_potential(
     solid: &impl DistanceField,
     pose: Pose3,
     [points, normals]: [&[Vec3]; 2],
-    (way, turn): (Vec3, Vec3),
+    (displacement, turn): (Vec3, Vec3),
 ) -> Result<(), TestCaseError> {
     let tree = tree_of(points, normals);
     let center = Vec3::new(0.01, -0.02, 0.005);
     let linear = Query::new(&tree, solid, pose).linear_wrench(center, Weight::Point);
     let [t, m, r] = [linear.translational, linear.mixed, linear.rotational];
-    let curved = way.dot(t * way) + 2.0 * turn.dot(m * way) + turn.dot(r * turn);
-    let given = linear.wrench.force.dot(way) + linear.wrench.torque.dot(turn);
+    let curved =
+        displacement.dot(t * displacement) + 2.0 * turn.dot(m * displacement) + turn.dot(r * turn);
+    let given = linear.wrench.force.dot(displacement) + linear.wrench.torque.dot(turn);
     let change = 0.5 * curved - given;
 
     let turned = Quat::from_scaled_axis(turn);
@@ -524,11 +525,11 @@ fn check_potential(
         };
         let before = at(*point);
         if before > 0.0 {
-            let after = at(center + turned * arm + way);
+            let after = at(center + turned * arm + displacement);
             expected += 0.5 * (after * after - before * before);
             // A rotation differs from a linear displacement by its square.
             let off = 0.5 * turn.length_squared() * arm.length();
-            let deepest = before + way.length() + turn.length() * arm.length();
+            let deepest = before + displacement.length() + turn.length() * arm.length();
             tolerance += deepest * (off + 1e-6) + off * off;
         }
     }
@@ -544,11 +545,11 @@ proptest! {
     fn the_potential_of_a_linear_wrench_is_nowhere_below_the_true_one(
         points in prop::collection::vec(vector(0.1), 1..9),
         normals in prop::array::uniform8(vector(1.0)),
-        pose in pose(0.1, 3.0), way in vector(0.05), turn in vector(0.02), is_turned in any::<bool>(),
+        pose in pose(0.1, 3.0), displacement in vector(0.05), turn in vector(0.02), is_turned in any::<bool>(),
     ) {
         let normals = normals.map(|n| n.try_normalize().unwrap_or(Vec3::Y));
         let shell = [&points[..], &normals[..points.len()]];
-        let motion = (way, if is_turned { turn } else { Vec3::ZERO });
+        let motion = (displacement, if is_turned { turn } else { Vec3::ZERO });
         check_potential(&Ball::new(0.1), pose, shell, motion)?;
         check_potential(&Cuboid::new(Vec3::new(0.1, 0.05, 0.2)), pose, shell, motion)?;
         check_potential(&HalfSpace::new(Vec3::new(1.0, 2.0, 3.0)), pose, shell, motion)?;

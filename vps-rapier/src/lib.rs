@@ -79,7 +79,7 @@ pub use field::shape_field::ShapeField;
 pub use query::shell_in_field::Sampling;
 pub use reduce::Manifolds;
 #[cfg(feature = "build")]
-pub use shape::builder::{ShapeError, ShapeInBackground, VpsShapeBuilder};
+pub use shape::builder::{PendingShape, ShapeError, VpsShapeBuilder};
 pub use shape::{Role, VpsShape};
 #[cfg(feature = "serde")]
 pub use snapshot::Snapshot;

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use vps_build::{
-    BuildOptions, Built, ClosestPoints, Clustering, Density, Encoding, PointCount, Repairs,
+    BuildOptions, BuildOutput, ClosestPoints, Clustering, Density, Encoding, PointCount, Repairs,
     Resolution, Sign, Stage, ThinWalls, build, read_mesh, write_asset,
 };
 use vps_core::encode;
@@ -254,8 +254,8 @@ fn progress(hidden: bool) -> ProgressBar {
     progress
 }
 
-fn summary_text(args: &BuildArgs, triangles: usize, built: &Built, seconds: f64) -> String {
-    let Built { asset, .. } = built;
+fn summary_text(args: &BuildArgs, triangles: usize, built: &BuildOutput, seconds: f64) -> String {
+    let BuildOutput { asset, .. } = built;
     let (map, tree) = (&asset.voxelmap, &asset.tree);
     let [x, y, z] = map.grid().dims();
     let kib = |bytes: usize| bytes.div_ceil(1024);
@@ -370,10 +370,10 @@ fn peak_memory() -> Option<u64> {
 fn summary_json(
     args: &BuildArgs,
     triangles: usize,
-    built: &Built,
+    built: &BuildOutput,
     seconds: f64,
 ) -> serde_json::Value {
-    let Built {
+    let BuildOutput {
         asset,
         repairs,
         thin_walls,

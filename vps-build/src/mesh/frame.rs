@@ -21,7 +21,7 @@ pub(crate) fn to_local(mesh: &Mesh, voxel_size: f64) -> (Cow<'_, Mesh>, DVec3) {
     if origin == DVec3::ZERO {
         return (Cow::Borrowed(mesh), origin);
     }
-    (Cow::Owned(mesh.moved(-origin)), origin)
+    (Cow::Owned(mesh.translated(-origin)), origin)
 }
 
 fn origin((low, high): (DVec3, DVec3), voxel_size: f64) -> DVec3 {

@@ -240,7 +240,7 @@ impl Mesh {
     }
 
     /// The mesh translated by a vector in metres. Rounding may bend it slightly; its triangles stay.
-    pub(crate) fn moved(&self, by: DVec3) -> Self {
+    pub(crate) fn translated(&self, by: DVec3) -> Self {
         Self {
             vertices: self.vertices.iter().map(|&v| v + by).collect(),
             triangles: self.triangles.clone(),

@@ -97,8 +97,10 @@ pub(crate) fn distance(p: [DVec3; 3], q: [DVec3; 3]) -> f64 {
     let between_edges = edges(p)
         .into_iter()
         .flat_map(|e| edges(q).map(|f| between_segments(e, f)));
-    let ways = from_corners.into_iter().chain(to_corners);
-    let squares = ways.chain(between_edges).map(DVec3::length_squared);
+    let displacements = from_corners.into_iter().chain(to_corners);
+    let squares = displacements
+        .chain(between_edges)
+        .map(DVec3::length_squared);
     squares.fold(f64::INFINITY, f64::min).sqrt()
 }
 

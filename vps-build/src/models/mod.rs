@@ -226,7 +226,7 @@ mod tests {
     }
 
     /// Whether an edge passes through a triangle with which it shares no vertex.
-    pub(super) fn cuts_itself(mesh: &Mesh) -> bool {
+    pub(super) fn self_intersects(mesh: &Mesh) -> bool {
         let passes = |p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]| {
             let above = |p| signed_volume([a, b, c], p);
             let sides = [[p, a, b], [p, b, c], [p, c, a]].map(|t| signed_volume(t, q));
@@ -252,7 +252,7 @@ mod tests {
     }
 
     /// Ratio of the area of a regular `n`-gon to that of its circumscribed circle.
-    pub(super) fn share_of_chords(n: usize) -> f64 {
+    pub(super) fn inscribed_area_fraction(n: usize) -> f64 {
         turn(1, n).sin() / turn(1, n)
     }
 
@@ -263,7 +263,7 @@ mod tests {
     #[test]
     fn a_tube_through_itself_is_noticed() {
         let profile = [(0.1, -0.5), (0.5, 0.0), (-0.2, 0.3)].map(|(x, y)| DVec2::new(x, y));
-        assert!(cuts_itself(&revolved(&profile, 8)));
+        assert!(self_intersects(&revolved(&profile, 8)));
     }
 
     #[test]
@@ -271,9 +271,9 @@ mod tests {
         for detail in [8, 64] {
             let mesh = torus(detail as u32);
             assert_eq!(mesh.triangles().len(), detail * detail);
-            assert!(!cuts_itself(&mesh));
+            assert!(!self_intersects(&mesh));
             let round = TAU * 0.35 * PI * 0.15 * 0.15;
-            let chords = share_of_chords(detail) * share_of_chords(detail / 2);
+            let chords = inscribed_area_fraction(detail) * inscribed_area_fraction(detail / 2);
             close(volume_of(&mesh, 1), round * chords, 1e-9);
         }
     }
@@ -284,12 +284,12 @@ mod tests {
             let mesh = trefoil_knot(detail);
             let around = (detail as usize / 4).max(6);
             assert_eq!(mesh.triangles().len(), 6 * detail as usize * around);
-            assert!(!cuts_itself(&mesh));
+            assert!(!self_intersects(&mesh));
             let position_at = |i| KnotFrame::at(turn(i, 4096)).origin;
             let length: f64 = (0..4096)
                 .map(|i| position_at(i).distance(position_at(i + 1)))
                 .sum();
-            let tube = length * PI / 196.0 * share_of_chords(around);
+            let tube = length * PI / 196.0 * inscribed_area_fraction(around);
             close(volume_of(&mesh, 1), tube, tolerance);
         }
     }
@@ -315,7 +315,7 @@ mod tests {
         for teeth in [3, 24] {
             let mesh = gear(teeth);
             assert_eq!(mesh.triangles().len(), 48 * teeth as usize);
-            assert!(!cuts_itself(&mesh));
+            assert!(!self_intersects(&mesh));
             let disc = |radius: f64| 0.2 * PI * (radius * radius - 0.15 * 0.15);
             let volume = volume_of(&mesh, 1);
             assert!(volume > disc(0.38) && volume < disc(0.5), "{volume} m³");
@@ -326,11 +326,15 @@ mod tests {
     fn a_cup_is_one_cone_without_another() {
         for detail in [8, 48] {
             let mesh = cup(detail as u32);
-            assert!(!cuts_itself(&mesh));
+            assert!(!self_intersects(&mesh));
             let cone =
                 |a: DVec2, b: DVec2| PI / 3.0 * (b.y - a.y) * (a.x * a.x + a.x * b.x + b.x * b.x);
             let round = cone(CUP[1], CUP[2]) - cone(CUP[4], CUP[3]);
-            close(volume_of(&mesh, 0), round * share_of_chords(detail), 1e-9);
+            close(
+                volume_of(&mesh, 0),
+                round * inscribed_area_fraction(detail),
+                1e-9,
+            );
         }
     }
 

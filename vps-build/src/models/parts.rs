@@ -55,15 +55,19 @@ pub fn link(detail: u32) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::models::tests::{close, cuts_itself, share_of_chords, volume_of};
+    use crate::models::tests::{close, inscribed_area_fraction, self_intersects, volume_of};
 
     #[test]
     fn a_peg_is_a_foot_a_rod_and_a_cone() {
         for detail in [8, 48] {
             let mesh = peg(detail as u32);
-            assert!(!cuts_itself(&mesh));
+            assert!(!self_intersects(&mesh));
             let round = PI * (0.16 * 0.05 + 0.01 * 0.8 + 0.01 * 0.15 / 3.0);
-            close(volume_of(&mesh, 0), round * share_of_chords(detail), 1e-9);
+            close(
+                volume_of(&mesh, 0),
+                round * inscribed_area_fraction(detail),
+                1e-9,
+            );
         }
     }
 
@@ -71,12 +75,12 @@ mod tests {
     fn a_link_is_a_rod_along_two_bows_and_two_straights() {
         for detail in [8, 64] {
             let mesh = link(detail as u32);
-            assert!(!cuts_itself(&mesh));
+            assert!(!self_intersects(&mesh));
             let (low, high) = mesh.bounds();
             close((high - low).x, 1.0, 1e-9);
             close((high - low).y, 0.5, 1e-9);
-            let bows = 2.0 * PI * LINK_BOW * share_of_chords(detail);
-            let rod = PI * LINK_ROD * LINK_ROD * share_of_chords(detail / 2);
+            let bows = 2.0 * PI * LINK_BOW * inscribed_area_fraction(detail);
+            let rod = PI * LINK_ROD * LINK_ROD * inscribed_area_fraction(detail / 2);
             let length = bows + 4.0 * LINK_HALF_STRAIGHT;
             close(volume_of(&mesh, 1), rod * length, 1e-9);
         }

@@ -110,7 +110,7 @@ fn within(value: f64, low: f64, high: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::models::tests::{close, cuts_itself, share_of_chords, volume_of};
+    use crate::models::tests::{close, inscribed_area_fraction, self_intersects, volume_of};
 
     /// The mean squared radius of a thread: the mean of a squared cosine is a half.
     fn mean_square(thread: Thread, clearance: f64) -> f64 {
@@ -122,9 +122,9 @@ mod tests {
         for (length, detail, tolerance) in [(1.0, 16, 0.02), (0.97, 64, 2e-3)] {
             let thread = Thread::default();
             let mesh = bolt(thread, length, detail);
-            assert!(detail > 16 || !cuts_itself(&mesh));
+            assert!(detail > 16 || !self_intersects(&mesh));
             let round = PI * mean_square(thread, 0.0) * length;
-            let chords = share_of_chords(detail as usize);
+            let chords = inscribed_area_fraction(detail as usize);
             close(volume_of(&mesh, 0), round * chords, tolerance);
         }
     }
@@ -138,9 +138,9 @@ mod tests {
                 ..Thread::default()
             };
             let mesh = nut(thread, 0.3, 0.01, detail);
-            assert!(detail > 18 || !cuts_itself(&mesh));
+            assert!(detail > 18 || !self_intersects(&mesh));
             let hexagon = 2.0 * 3.0_f64.sqrt() * (1.8 * 0.24_f64).powi(2);
-            let bore = PI * mean_square(thread, 0.01) * share_of_chords(detail as usize);
+            let bore = PI * mean_square(thread, 0.01) * inscribed_area_fraction(detail as usize);
             close(volume_of(&mesh, 1), 0.3 * (hexagon - bore), tolerance);
         }
     }

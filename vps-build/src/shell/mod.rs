@@ -14,7 +14,7 @@ use vps_core::{DistanceField, Vec3, Voxelmap};
 
 use self::areas::voronoi_areas;
 use self::poisson::{PoissonDisk, poisson_sample};
-use self::spacing::sample_about;
+use self::spacing::sample_to_count;
 use crate::mesh::Mesh;
 use crate::options::PointCount;
 
@@ -32,7 +32,7 @@ pub(crate) struct SurfaceSamples {
 pub(crate) fn sample_surface(mesh: &Mesh, count: PointCount, map: &Voxelmap<'_>) -> SurfaceSamples {
     let disk = match count {
         PointCount::Spacing(spacing) => poisson_sample(mesh, spacing),
-        PointCount::About(count) => sample_about(mesh, count),
+        PointCount::About(count) => sample_to_count(mesh, count),
     };
     let normals = inward_normals(&disk, map);
     let areas = voronoi_areas(mesh, &disk, &normals);

@@ -49,9 +49,9 @@ pub(crate) fn max_points(mesh: &Mesh, points: PointCount) -> Result<f64, BuildEr
 }
 
 /// The samples at the spacing that gives about `count` points.
-pub(super) fn sample_about(mesh: &Mesh, count: u32) -> PoissonDisk {
+pub(super) fn sample_to_count(mesh: &Mesh, count: u32) -> PoissonDisk {
     let target = f64::from(count);
-    let least = least_spacing(mesh, target);
+    let least = min_spacing(mesh, target);
     let mut spacing = spacing_for(mesh, target);
     // Bounds of the spacing: it gave too many points, or too few.
     let (mut too_small, mut too_large) = (0.0, f64::INFINITY);
@@ -97,11 +97,11 @@ pub(super) fn sample_about(mesh: &Mesh, count: u32) -> PoissonDisk {
 /// The spacing in metres of about `count` points.
 pub(crate) fn spacing_for(mesh: &Mesh, count: f64) -> f64 {
     let on_area = (mesh.area() / (AREA_PER_POINT * count)).sqrt();
-    on_area.max(least_spacing(mesh, count))
+    on_area.max(min_spacing(mesh, count))
 }
 
 /// The spacing in metres below which the longest edge alone has more than `count` points.
-fn least_spacing(mesh: &Mesh, count: f64) -> f64 {
+fn min_spacing(mesh: &Mesh, count: f64) -> f64 {
     longest_edge(mesh) / (2.0 * COVERING_RADIUS * count)
 }
 

@@ -53,12 +53,12 @@ impl ExactSolid {
         let (local, origin) = frame::to_local(mesh, voxel_size(mesh, &options)?);
         let grid = grid(&local, &options, 0.0)?;
         let solid = solid(&local, sign, &grid, options.memory_limit)?;
-        let boundary = solid.mesh.moved(origin);
+        let boundary = solid.mesh.translated(origin);
         // Winding numbers are those of the closed surface, hidden faces included.
         let closed = if solid.is_closed {
             boundary.clone()
         } else {
-            surface(&local, sign, &grid, &mut Repairs::default())?.moved(origin)
+            surface(&local, sign, &grid, &mut Repairs::default())?.translated(origin)
         };
         let inside = if solid.repairs.left_open {
             Inside::Generalized(FastWinding::of(Cow::Owned(closed)))

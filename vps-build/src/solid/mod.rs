@@ -30,7 +30,7 @@ use vps_core::Grid;
 
 use self::fast_winding::FastWinding;
 use self::repair::{Repairs, surface};
-use self::union::{Layout, NoUnion, layout, union};
+use self::union::{Layout, UnionError, layout, union};
 use self::voxelize::VoxelClasses;
 use self::winding::ScanlineIndex;
 use crate::error::BuildError;
@@ -101,8 +101,8 @@ pub(crate) fn solid<'m>(
             let (classes, _) = VoxelClasses::by_winding(&boundary, grid);
             Ok(closed(Cow::Owned(boundary), classes, repairs))
         }
-        Err(NoUnion::Empty) => Err(BuildError::NotSolid),
-        Err(NoUnion::Failed) => {
+        Err(UnionError::Empty) => Err(BuildError::NotSolid),
+        Err(UnionError::Failed) => {
             repairs.still_overlapping = true;
             let (classes, _) = VoxelClasses::by_winding(&surface, grid);
             let scanlines = ScanlineIndex::new(&surface);

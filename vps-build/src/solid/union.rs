@@ -52,7 +52,7 @@ pub(super) fn layout(surface: &Mesh) -> Layout {
 
 /// Why present is no union.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NoUnion {
+pub(super) enum UnionError {
     /// The solid is empty.
     Empty,
     /// The computation failed.
@@ -60,7 +60,7 @@ pub(super) enum NoUnion {
 }
 
 /// The boundary of the solid with winding number one or more.
-pub(super) fn union(surface: &Mesh, layout: Layout) -> Result<Mesh, NoUnion> {
+pub(super) fn union(surface: &Mesh, layout: Layout) -> Result<Mesh, UnionError> {
     let half_gap = 0.5 * gap_tolerance(surface);
     if layout == Layout::WithGaps {
         let offset = offset_outwards(surface, half_gap)?;
@@ -69,7 +69,7 @@ pub(super) fn union(surface: &Mesh, layout: Layout) -> Result<Mesh, NoUnion> {
     outer_boundary(surface)
 }
 
-fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
+fn outer_boundary(surface: &Mesh) -> Result<Mesh, UnionError> {
     // Relative to the centre, to keep digits.
     let (low, high) = surface.bounds();
     let middle = low.midpoint(high);
@@ -90,9 +90,9 @@ fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
         let solid = Manifold::from_mesh_gl64_robust(&input).rebuild_solid(WindingRule::Positive);
         (solid.status() == Error::NoError).then(|| solid.get_mesh_gl64(-1))
     }));
-    let output = output.ok().flatten().ok_or(NoUnion::Failed)?;
+    let output = output.ok().flatten().ok_or(UnionError::Failed)?;
     if output.tri_verts.is_empty() {
-        return Err(NoUnion::Empty);
+        return Err(UnionError::Empty);
     }
     let stride = output.num_prop as usize;
     let vertices = output.vert_properties.chunks_exact(stride);
@@ -105,16 +105,16 @@ fn outer_boundary(surface: &Mesh) -> Result<Mesh, NoUnion> {
         .collect();
     let boundary = without_collapsed(&vertices, &triangles)?;
     if boundary.open_edges() > 0 {
-        return Err(NoUnion::Failed);
+        return Err(UnionError::Failed);
     }
     Ok(boundary)
 }
 
 /// The mesh without triangles that have two equal corners, or that cancel a triangle of the
 /// opposite orientation.
-fn without_collapsed(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, NoUnion> {
+fn without_collapsed(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Mesh, UnionError> {
     let new = |vertices: &[DVec3], triangles: &[[u32; 3]]| {
-        Mesh::new(vertices, triangles).map_err(|_| NoUnion::Failed)
+        Mesh::new(vertices, triangles).map_err(|_| UnionError::Failed)
     };
     let mesh = new(vertices, triangles)?;
     let mut remaining = mesh.triangles().to_vec();
@@ -168,7 +168,7 @@ const DAMPING: f64 = 1e-9;
 
 /// The surface with its faces moved outwards by `by` metres. Each corner of a body moves to the
 /// offset planes of its faces.
-fn offset_outwards(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
+fn offset_outwards(surface: &Mesh, by: f64) -> Result<Mesh, UnionError> {
     let fans = Fans::of(surface, 2.0 * by);
     let mut planes = vec![PlaneFit::NONE; fans.vertices.len()];
     for (t, corners) in fans.of_triangles.iter().enumerate() {
@@ -182,12 +182,17 @@ fn offset_outwards(surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
         surface.vertices()[v as usize] + planes.displacement().clamp_length_max(MITER_LIMIT * by)
     };
     let vertices: Vec<_> = vertices.map(moved).collect();
-    Mesh::new(&vertices, &fans.of_triangles).map_err(|_| NoUnion::Failed)
+    Mesh::new(&vertices, &fans.of_triangles).map_err(|_| UnionError::Failed)
 }
 
 /// Moves the vertices of a boundary from faces of the offset surface to the same faces of the
 /// original.
-fn undo_offset(boundary: &Mesh, offset: &Mesh, surface: &Mesh, by: f64) -> Result<Mesh, NoUnion> {
+fn undo_offset(
+    boundary: &Mesh,
+    offset: &Mesh,
+    surface: &Mesh,
+    by: f64,
+) -> Result<Mesh, UnionError> {
     // Rounding of a vertex on a face.
     let near = 1e-5 * by;
     let tree = BoxTree::new(offset, near);

@@ -74,14 +74,14 @@ fn distances_of_faces_are_exact_from_afar() {
     };
     let map = build(&mesh, &options, &|_| ()).unwrap().asset.voxelmap;
     let near = map.error_bounds().in_band;
-    for way in [0.0, 0.1, 0.3, 1.0, 7.0, 100.0] {
-        let point = Vec3::new(0.1, 0.2 + way, -0.05);
-        let off = map.trilinear().signed_distance(point) - way;
-        assert!(off.abs() <= near + 1e-6 * way, "{way}: {off}");
+    for distance in [0.0, 0.1, 0.3, 1.0, 7.0, 100.0] {
+        let point = Vec3::new(0.1, 0.2 + distance, -0.05);
+        let off = map.trilinear().signed_distance(point) - distance;
+        assert!(off.abs() <= near + 1e-6 * distance, "{distance}: {off}");
         assert!(map.trilinear().inward_direction(point).distance(-Vec3::Y) < 0.02);
         // Over an edge it is no longer than the path around the border.
-        let over_edge = Vec3::new(0.5 + way, 0.2 + way, 0.0);
-        let off = map.trilinear().signed_distance(over_edge) - 2.0_f32.sqrt() * way;
+        let over_edge = Vec3::new(0.5 + distance, 0.2 + distance, 0.0);
+        let off = map.trilinear().signed_distance(over_edge) - 2.0_f32.sqrt() * distance;
         assert!(off <= map.trilinear().overestimate_bound_at(over_edge));
         assert!(off >= -map.trilinear().error_bound_at(over_edge));
     }

@@ -174,7 +174,7 @@ fn check_linear_wrench<F: DistanceField + ?Sized>(
     center: Vec3,
     weight: Weight,
 ) -> Result<(), TestCaseError> {
-    let (way, turn) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(-0.7, 0.2, 0.4));
+    let (displacement, turn) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(-0.7, 0.2, 0.4));
     // Rotated as in the query, to the bit.
     let rotation = Mat3::from_quat(pose.rotation);
     let zero = glamx::DVec3::ZERO;
@@ -194,7 +194,7 @@ fn check_linear_wrench<F: DistanceField + ?Sized>(
         pushed += f;
         turned += arm.cross(f);
         pushed_size += f.length();
-        let moved = way.as_dvec3() + turn.as_dvec3().cross(arm);
+        let moved = displacement.as_dvec3() + turn.as_dvec3().cross(arm);
         let f = -weight * normal.dot(moved) * normal;
         force += f;
         torque += arm.cross(f);
@@ -205,9 +205,9 @@ fn check_linear_wrench<F: DistanceField + ?Sized>(
     prop_assert!((linear.wrench.torque - turned.as_vec3()).length() <= tolerance);
     let tolerance = 1e-4 * size as f32;
     let [t, m, r] = [linear.translational, linear.mixed, linear.rotational];
-    let changed = -(t * way + m.transpose() * turn);
+    let changed = -(t * displacement + m.transpose() * turn);
     prop_assert!((changed - force.as_vec3()).length() <= tolerance);
-    let changed = -(m * way + r * turn);
+    let changed = -(m * displacement + r * turn);
     prop_assert!((changed - torque.as_vec3()).length() <= tolerance);
     Ok(())
 }
@@ -374,13 +374,13 @@ proptest! {
     /// No contact along the motion is missed, and none is found too late.
     #[test]
     fn sweeps_find_the_first_contact(
-        shell in bumpy_mesh(), field in bumpy_mesh(), start in pose(1.5), way in vector(3.0),
+        shell in bumpy_mesh(), field in bumpy_mesh(), start in pose(1.5), displacement in vector(3.0),
         turn in pose(0.1),
     ) {
         let shell = asset(&shell, 150, Encoding::Distances(None));
         let field = asset(&field, 10, Encoding::Distances(None));
         let field = field.voxelmap.trilinear();
-        let end = Pose3::from_parts(start.translation + way, turn.rotation * start.rotation);
+        let end = Pose3::from_parts(start.translation + displacement, turn.rotation * start.rotation);
         let sweep = Sweep::new(&shell.tree, &field, start, end);
         let reached = sweep.pose_at(1.0);
         prop_assert!(reached.translation.distance(end.translation) < 1e-5);

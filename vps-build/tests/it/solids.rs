@@ -4,7 +4,8 @@ use crate::support::{bumpy_mesh, exact_penetration};
 use glamx::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use vps_build::{
-    BuildError, BuildOptions, Built, Density, Mesh, PointCount, Repairs, Resolution, Sign, build,
+    BuildError, BuildOptions, BuildOutput, Density, Mesh, PointCount, Repairs, Resolution, Sign,
+    build,
 };
 use vps_core::DistanceField;
 
@@ -18,7 +19,7 @@ fn options(sign: Sign) -> BuildOptions {
     }
 }
 
-fn built(mesh: &Mesh, sign: Sign) -> Built {
+fn built(mesh: &Mesh, sign: Sign) -> BuildOutput {
     build(mesh, &options(sign), &|_| ()).unwrap()
 }
 
@@ -48,7 +49,7 @@ fn turned(mesh: &Mesh) -> Mesh {
 /// Checks the penetration of all voxels against `exact`, to within `error` metres, except for
 /// voxels that `skip` selects.
 fn check(
-    built: &Built,
+    built: &BuildOutput,
     error: f64,
     exact: impl Fn(DVec3) -> f64,
     skip: impl Fn(DVec3) -> bool,
@@ -139,13 +140,13 @@ fn a_cavity_stays_hollow_and_an_inner_part_is_swallowed() {
     assert!(solid.repairs.merged);
     let filled = built(&together(&outer, &turned(&inner)), Sign::Fill);
     assert_eq!(filled.repairs.hidden_faces, inner.triangles().len());
-    let at_center = |built: &Built| {
+    let at_center = |built: &BuildOutput| {
         let map = &built.asset.voxelmap;
         map.center_penetration(map.grid().voxel_at(vps_core::Vec3::ZERO))
     };
     assert!(at_center(&hollow) < -0.1);
     assert!(at_center(&solid) > 0.4 && at_center(&filled) > 0.4);
-    let volume = |built: &Built| built.asset.mass.volume;
+    let volume = |built: &BuildOutput| built.asset.mass.volume;
     let expected = volume(&built(&outer, Sign::Winding));
     let hole = volume(&built(&inner, Sign::Winding));
     assert!((volume(&hollow) - (expected - hole)).abs() < 1e-4 * expected);
@@ -239,7 +240,7 @@ fn askew_box(low: [f64; 3], high: [f64; 3], flipped: bool) -> Mesh {
     Mesh::new(&vertices, &triangles).unwrap()
 }
 
-fn depth(built: &Built, place: [f64; 3]) -> f64 {
+fn depth(built: &BuildOutput, place: [f64; 3]) -> f64 {
     let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.7, 1.1);
     let place = (turn * DVec3::from_array(place)).as_vec3();
     f64::from(-built.asset.voxelmap.trilinear().signed_distance(place))

@@ -87,7 +87,7 @@ fn scaled_tree(
 ) -> Result<PointSphereTree<'static>, ScaleError> {
     let times = |v: &[f32; 3]| v.map(|c| c * factor);
     // Rounding may move a point out of its ball and away from its paraboloid by this.
-    let slack = 8.0 * f32::EPSILON * tree.reach();
+    let slack = 8.0 * f32::EPSILON * tree.origin_distance_bound();
     let cluster = |c: &Cluster| Cluster {
         center: times(&c.center),
         radius: (c.radius + slack) * factor,

@@ -42,7 +42,7 @@ impl Discs {
     /// The support of a piece: the furthest it reaches from its centre in a unit direction, in
     /// metres. For fields that bound one piece after the other.
     #[inline]
-    pub fn reach(&self, lane: usize, direction: Vec3) -> f32 {
+    pub fn support(&self, lane: usize, direction: Vec3) -> f32 {
         let radius = self.radii[lane];
         let across = direction.dot(self.normals.get(lane));
         let along = f32x4::splat((1.0 - across * across).max(0.0))

@@ -7,7 +7,7 @@ use wide::f32x4;
 
 use crate::field::DistanceField;
 use crate::force::wrench::{Weight, Wrench, WrenchSum};
-use crate::query::collectors::{Collector, Found};
+use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::posed::Query;
 use crate::query::work::CountWork;
 use crate::simd::Vectors;
@@ -144,7 +144,7 @@ impl Collector for LinearWrenchSum<'_> {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         let is_inside = found.penetrations.simd_gt(f32x4::ZERO);
         let weights = self.sum.weighted(found, is_inside & f32x4::ONE);
         let normals = found.outward;

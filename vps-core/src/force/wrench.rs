@@ -4,7 +4,7 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::field::DistanceField;
-use crate::query::collectors::{Collector, Found};
+use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
 use crate::query::work::CountWork;
@@ -95,7 +95,7 @@ impl<'q> WrenchSum<'q> {
 
     /// Each number times the weight of its point, zero for points that are not in contact.
     #[inline(always)]
-    pub(crate) fn weighted(&self, found: &Found<'_>, numbers: f32x4) -> f32x4 {
+    pub(crate) fn weighted(&self, found: &TestedPoints<'_>, numbers: f32x4) -> f32x4 {
         let numbers = found.contact_mask & numbers;
         match self.areas {
             Some(areas) => {
@@ -107,7 +107,7 @@ impl<'q> WrenchSum<'q> {
 
     /// Adds the forces of contacts along `directions`.
     #[inline(always)]
-    pub(crate) fn add_forces(&mut self, found: &Found<'_>, directions: Vectors) {
+    pub(crate) fn add_forces(&mut self, found: &TestedPoints<'_>, directions: Vectors) {
         let weights = self.weighted(found, found.penetrations.fast_max(f32x4::ZERO));
         let force = directions.times(weights);
         self.force = self.force.plus(force);
@@ -116,7 +116,7 @@ impl<'q> WrenchSum<'q> {
 
     /// Lever arms from the reference point of the torque.
     #[inline(always)]
-    pub(crate) fn lever_arms(&self, found: &Found<'_>) -> Vectors {
+    pub(crate) fn lever_arms(&self, found: &TestedPoints<'_>) -> Vectors {
         found.positions.minus(self.center)
     }
 }
@@ -131,7 +131,7 @@ impl Collector for WrenchSum<'_> {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         self.add_forces(found, found.inward);
         true
     }

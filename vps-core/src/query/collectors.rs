@@ -39,11 +39,11 @@ pub(crate) trait Collector {
     fn penetration_threshold(&self) -> f32;
 
     /// Takes contacts with at least that penetration. False ends the search.
-    fn add(&mut self, found: &Found<'_>) -> bool;
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool;
 }
 
 /// Points that were tested together.
-pub(crate) struct Found<'t> {
+pub(crate) struct TestedPoints<'t> {
     pub(super) tree: &'t PointSphereTree<'t>,
     /// Index of the first point.
     pub(crate) first: u32,
@@ -59,7 +59,7 @@ pub(crate) struct Found<'t> {
     pub(crate) outward: Vectors,
 }
 
-impl Found<'_> {
+impl TestedPoints<'_> {
     /// The contacts, in the order of the points.
     #[inline(always)]
     pub(crate) fn contacts(&self) -> impl Iterator<Item = Contact> {
@@ -104,7 +104,7 @@ impl<V: FnMut(Contact)> Collector for AllContacts<V> {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         found.contacts().for_each(&mut self.visit);
         true
     }
@@ -125,7 +125,7 @@ impl Collector for AnyContact {
     }
 
     #[inline(always)]
-    fn add(&mut self, _found: &Found<'_>) -> bool {
+    fn add(&mut self, _found: &TestedPoints<'_>) -> bool {
         self.found = true;
         false
     }
@@ -156,7 +156,7 @@ impl Collector for DeepestContact {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         let deep = found.contact_mask & found.penetrations.simd_ge(f32x4::splat(self.threshold));
         for contact in found.contacts_in(deep) {
             if contact.is_deeper_than(self.found.as_ref()) {

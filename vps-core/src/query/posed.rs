@@ -43,7 +43,7 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     /// A query for contacts; `shell_to_field` transforms shell coordinates to field coordinates.
     pub fn new(tree: &'q PointSphereTree<'q>, field: &'q F, shell_to_field: Pose3) -> Self {
         let translation = shell_to_field.translation;
-        let reach = tree.reach() + translation.length();
+        let reach = tree.origin_distance_bound() + translation.length();
         Self {
             tree,
             field,

@@ -4,7 +4,7 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::field::{Discs, DistanceField};
-use crate::query::collectors::{Collector, Found};
+use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::posed::Query;
 use crate::query::work::CountWork;
 use crate::shell::{Cluster, MAX_LEVELS};
@@ -277,7 +277,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             };
             let penetrations = f32x4::new(penetrations);
             let threshold = f32x4::splat(collector.penetration_threshold());
-            let found = Found {
+            let found = TestedPoints {
                 tree: self.tree,
                 first: next,
                 contact_mask: first_lanes(end - next) & penetrations.simd_ge(threshold),

@@ -78,7 +78,8 @@ impl<'q, F: DistanceField + ?Sized> Sweep<'q, F> {
     /// to the first contact. A tolerance below a four-millionth of the motion is not reached.
     pub fn first_contact(&self, tolerance: f32) -> Option<Impact> {
         // Upper bound on the speed of any point, in metres a step.
-        let speed = self.translation.length() + self.angle.abs() * self.tree.reach();
+        let speed =
+            self.translation.length() + self.angle.abs() * self.tree.origin_distance_bound();
         if !(speed.is_finite() && self.start.is_finite()) {
             return None;
         }

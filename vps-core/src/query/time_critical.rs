@@ -4,7 +4,7 @@ use glamx::Vec3;
 
 use crate::field::DistanceField;
 use crate::force::wrench::{Weight, Wrench, WrenchSum};
-use crate::query::collectors::{Collector, DeepestContact, Found};
+use crate::query::collectors::{Collector, DeepestContact, TestedPoints};
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
@@ -128,7 +128,7 @@ impl Collector for WrenchAndDeepest<'_> {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         self.deepest.add(found) && self.sum.add(found)
     }
 }

@@ -22,7 +22,7 @@ pub struct PointSphereTree<'a> {
     clusters: Storage<'a, Cluster>,
     level_starts: Storage<'a, u32>,
     bounds: Aabb,
-    reach: f32,
+    origin_distance_bound: f32,
 }
 
 impl<'a> PointSphereTree<'a> {
@@ -61,7 +61,7 @@ impl<'a> PointSphereTree<'a> {
             return Err(TreeError::Area(i));
         }
         let bounds = Aabb::of_points(points.iter().map(position)).ok_or(TreeError::NoPoints)?;
-        let reach = bounds.min.abs().max(bounds.max.abs()).length();
+        let origin_distance_bound = bounds.min.abs().max(bounds.max.abs()).length();
         let tree = Self {
             points,
             normals,
@@ -69,7 +69,7 @@ impl<'a> PointSphereTree<'a> {
             clusters,
             level_starts,
             bounds,
-            reach,
+            origin_distance_bound,
         };
         tree.check_levels()?;
         tree.check_clusters()?;
@@ -243,8 +243,8 @@ impl<'a> PointSphereTree<'a> {
 
     /// Upper bound on the distance of any point from the origin of the shell frame, in metres.
     #[inline]
-    pub(crate) fn reach(&self) -> f32 {
-        self.reach
+    pub(crate) fn origin_distance_bound(&self) -> f32 {
+        self.origin_distance_bound
     }
 
     /// A box around all points, in the shell frame.
@@ -262,7 +262,7 @@ impl<'a> PointSphereTree<'a> {
             clusters: self.clusters.into_owned(),
             level_starts: self.level_starts.into_owned(),
             bounds: self.bounds,
-            reach: self.reach,
+            origin_distance_bound: self.origin_distance_bound,
         }
     }
 }

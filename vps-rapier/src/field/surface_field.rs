@@ -201,12 +201,12 @@ impl DistanceField for SurfaceField<'_> {
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         if let Some(plane) = &self.plane {
             return std::array::from_fn(|lane| {
-                let reach = discs.reach(lane, -plane.normal);
+                let reach = discs.support(lane, -plane.normal);
                 plane.penetration(discs.centers.get(lane)) + reach
             });
         }
         std::array::from_fn(|lane| {
-            let extent = |direction| discs.reach(lane, direction);
+            let extent = |direction| discs.support(lane, direction);
             self.bound(discs.centers.get(lane), discs.radii[lane], extent)
         })
     }

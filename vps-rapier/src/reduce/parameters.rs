@@ -16,10 +16,10 @@ pub(super) const SAME_NORMAL_COSINE: f32 = 0.996_2;
 pub(super) const PERSISTENCE_TOLERANCE: f32 = 1e-4;
 
 /// Depth by which persistent contacts may be shallower besides, relative to the deepest new contact.
-pub(super) const PERSISTENCE_DEPTH_SHARE: f32 = 0.1;
+pub(super) const PERSISTENCE_DEPTH_FRACTION: f32 = 0.1;
 
 /// Spread that persistent contacts need, relative to that of the new ones.
-pub(super) const PERSISTENCE_SPREAD_SHARE: f32 = 0.8;
+pub(super) const PERSISTENCE_SPREAD_FRACTION: f32 = 0.8;
 
 /// Cosine between normals above which a new contact takes over the warm start of an old one with
 /// another id.

@@ -4,7 +4,9 @@ use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use rapier3d::parry::shape::PackedFeatureId;
 use vps_core::{Pose3, Vec3};
 
-use super::parameters::{PERSISTENCE_DEPTH_SHARE, PERSISTENCE_SPREAD_SHARE, WARM_START_COSINE};
+use super::parameters::{
+    PERSISTENCE_DEPTH_FRACTION, PERSISTENCE_SPREAD_FRACTION, WARM_START_COSINE,
+};
 use crate::precision::core_vector;
 use crate::query::pair::Pair;
 use crate::query::pair_contact::{PairContact, max_penetration};
@@ -39,11 +41,11 @@ pub(super) fn should_persist(
         let depths = contacts.iter().map(|c| c.penetration);
         depths.fold(f32::INFINITY, f32::min)
     };
-    let tolerance = tolerance + PERSISTENCE_DEPTH_SHARE * max_penetration(new).max(0.0);
+    let tolerance = tolerance + PERSISTENCE_DEPTH_FRACTION * max_penetration(new).max(0.0);
     previous.len() == new.len()
         && max_penetration(previous) >= max_penetration(new) - tolerance
         && min_penetration(previous) >= min_penetration(new) - tolerance
-        && spread(previous) >= PERSISTENCE_SPREAD_SHARE * spread(new)
+        && spread(previous) >= PERSISTENCE_SPREAD_FRACTION * spread(new)
 }
 
 /// Sum of the squared distances between all pairs of contacts, in m².

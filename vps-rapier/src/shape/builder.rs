@@ -133,16 +133,16 @@ impl VpsShapeBuilder {
     }
 
     /// Builds the shape in a thread of its own.
-    pub fn build_in_background(self) -> ShapeInBackground {
-        ShapeInBackground(std::thread::spawn(|| self.build()))
+    pub fn build_in_background(self) -> PendingShape {
+        PendingShape(std::thread::spawn(|| self.build()))
     }
 }
 
 /// A shape that is being built.
 #[derive(Debug)]
-pub struct ShapeInBackground(JoinHandle<Result<VpsShape, ShapeError>>);
+pub struct PendingShape(JoinHandle<Result<VpsShape, ShapeError>>);
 
-impl ShapeInBackground {
+impl PendingShape {
     /// Whether [`wait`](Self::wait) would return at once.
     pub fn is_ready(&self) -> bool {
         self.0.is_finished()

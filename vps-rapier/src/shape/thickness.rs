@@ -7,7 +7,7 @@ const SAMPLES: usize = 512;
 
 /// One sample in this many may be thinner than the thickness: a thin tip, such as that of a claw, is no
 /// thin wall.
-const THIN_SHARE: usize = 20;
+const THIN_SAMPLE_RATIO: usize = 20;
 
 /// Thickness of an asset's solid in metres: along the normals of the shell's points, all but a
 /// twentieth of them measure at least that. Costs some milliseconds.
@@ -32,6 +32,6 @@ pub(crate) fn thickness(asset: &Asset<'_>) -> f32 {
     let points = (0..tree.point_count()).step_by(stride);
     let mut distances: Vec<f32> = points.map(through).collect();
     distances.sort_unstable_by(f32::total_cmp);
-    let thin = distances.get(distances.len() / THIN_SHARE);
+    let thin = distances.get(distances.len() / THIN_SAMPLE_RATIO);
     thin.map_or(0.0, |thin| thin.min(extents.min_element()))
 }

@@ -40,7 +40,7 @@ impl Snapshot {
     /// Takes a snapshot of a world, which is not changed.
     pub fn of(world: &PhysicsWorld) -> Self {
         let mut colliders = world.colliders.clone();
-        let shapes = ShapeSnapshot::take_out(&mut colliders, &world.bodies);
+        let shapes = ShapeSnapshot::extract(&mut colliders, &world.bodies);
         let world = PhysicsWorld {
             gravity: world.gravity,
             integration_parameters: world.integration_parameters,
@@ -64,7 +64,7 @@ impl Snapshot {
     /// When the file of an asset cannot be read, or an asset in the snapshot is not valid.
     pub fn restore(self) -> Result<PhysicsWorld, ShapeError> {
         let mut world = self.world;
-        self.shapes.put_back(&mut world.colliders, &world.bodies)?;
+        self.shapes.restore(&mut world.colliders, &world.bodies)?;
         let dispatcher = VpsDispatcher::default().chain(DefaultQueryDispatcher);
         world.narrow_phase.set_query_dispatcher(dispatcher);
         Ok(world)

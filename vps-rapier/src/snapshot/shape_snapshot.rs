@@ -41,7 +41,7 @@ struct SavedShape {
 
 impl ShapeSnapshot {
     /// Replaces each VPS shape by a small ball. rapier does not see that as a change.
-    pub fn take_out(colliders: &mut ColliderSet, bodies: &RigidBodySet) -> Self {
+    pub fn extract(colliders: &mut ColliderSet, bodies: &RigidBodySet) -> Self {
         let mut saved = Self::default();
         let mut indices = HashMap::new();
         let mut replaced = Vec::new();
@@ -81,7 +81,7 @@ impl ShapeSnapshot {
     ///
     /// # Errors
     /// When an asset cannot be read. Then nothing is changed.
-    pub fn put_back(
+    pub fn restore(
         &self,
         colliders: &mut ColliderSet,
         bodies: &RigidBodySet,

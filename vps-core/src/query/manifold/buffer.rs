@@ -4,7 +4,7 @@ use wide::f32x4;
 
 use super::collectors::BestCandidate;
 use super::weighting::{DepthWeighting, MIN_FILL_WEIGHT, MIN_WEIGHT};
-use crate::query::collectors::{Collector, DeepestContact, Found};
+use crate::query::collectors::{Collector, DeepestContact, TestedPoints};
 use crate::query::contact::Contact;
 use crate::shell::PointSphereTree;
 use crate::simd::{LANES, Points, Vectors, lanes_in};
@@ -147,7 +147,7 @@ impl Collector for CandidateBuffer {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         let previous_threshold = self.deepest.threshold;
         self.deepest.add(found);
         if self.deepest.threshold > previous_threshold {

@@ -4,7 +4,7 @@ use wide::f32x4;
 
 use super::polygon::Polygon;
 use crate::field::Discs;
-use crate::query::collectors::{Collector, Found};
+use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::contact::Contact;
 use crate::simd::lanes_in;
 
@@ -37,7 +37,7 @@ impl<const N: usize> Collector for BestCandidate<'_, N> {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         let scores = self.polygon.scores(found.positions, found.penetrations);
         for lane in lanes_in(found.contact_mask & scores.simd_ge(f32x4::splat(self.threshold))) {
             self.consider(found.contact(lane), scores.to_array()[lane]);
@@ -89,7 +89,7 @@ impl<const N: usize> Collector for OffPlane<'_, N> {
     }
 
     #[inline(always)]
-    fn add(&mut self, found: &Found<'_>) -> bool {
+    fn add(&mut self, found: &TestedPoints<'_>) -> bool {
         let off_plane = self.polygon.off_plane(found.positions, found.penetrations);
         self.found = (found.contact_mask & off_plane).any();
         !self.found
