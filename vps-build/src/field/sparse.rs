@@ -294,9 +294,9 @@ impl<'a> Cell<'a> {
         }
         let flat: f64 = (0..3).map(|axis| least_change(&exact, axis).powi(2)).sum();
         let loss = (0.75 * edge * edge - 0.25 * flat).max(0.0);
-        let bend = nearest - (nearest * nearest - loss).sqrt();
+        let sagitta = nearest - (nearest * nearest - loss).sqrt();
         let excess = (0..8).map(|i| given[i] - exact[i]);
-        if excess.fold(0.0, f64::max) + bend > beyond_band {
+        if excess.fold(0.0, f64::max) + sagitta > beyond_band {
             return false;
         }
         // The distance to a point is convex: a bound at all corners holds between them.
