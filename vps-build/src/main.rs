@@ -23,13 +23,13 @@ struct Cli {
 enum Command {
     /// Build a .vps file from a mesh
     Build(build::BuildArgs),
-    /// Tell what a mesh or a .vps file is like: a health report
+    /// Report the health of a mesh, or the properties of a .vps file
     Inspect(inspect::InspectArgs),
-    /// Points, balls, voxels or the surface of a .vps file as PLY, to look at
+    /// Export points, balls, voxels or the surface of a .vps file as PLY, for viewers
     Export(export::ExportArgs),
     /// Penetration, gradient and error bound at the points of a CSV file
     Sample(sample::SampleArgs),
-    /// A script that completes this command in a shell
+    /// Print a completion script for a shell
     Completions {
         /// Which shell
         shell: Shell,

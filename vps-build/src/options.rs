@@ -131,7 +131,7 @@ impl Default for BuildOptions {
     }
 }
 
-/// Which side of a triangle is the inside, and what becomes of holes.
+/// Which side of a triangle is the inside, and the treatment of holes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sign {
     /// As [`Winding`](Self::Winding), or as [`Generalized`](Self::Generalized) if the filling of the

@@ -23,7 +23,7 @@ pub enum PrepareError {
     #[error("cannot build the asset: {0}")]
     Asset(String),
     /// A mesh cannot be taken for a box.
-    #[error("a mesh is no exact cuboid")]
+    #[error("a mesh cannot be an exact cuboid")]
     NotACuboid,
     /// parry refuses the triangles.
     #[error("not a triangle mesh for parry: {0}")]

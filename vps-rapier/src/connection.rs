@@ -1,4 +1,4 @@
-//! Whether VPS shapes of this process are asked through our dispatcher at all.
+//! Whether queries about the VPS shapes of this process reach our dispatcher.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

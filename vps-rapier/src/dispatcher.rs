@@ -40,7 +40,7 @@ pub struct VpsDispatcher {
     pub manifolds: Manifolds,
 }
 
-/// How two shapes are asked.
+/// How two shapes are queried.
 #[expect(
     clippy::large_enum_variant,
     reason = "one at a time, on the stack for one query"

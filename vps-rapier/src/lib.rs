@@ -24,14 +24,14 @@
 //!
 //! # What collides
 //! A VPS shape collides with VPS shapes and with every shape of parry, in compounds too. Its shell is
-//! asked in the exact field of a ball, a cuboid or a half-space, and in the [`ShapeField`] of any other
-//! shape of parry, which also defines a field of surfaces without an interior. Its voxelmap is asked at
-//! points on the edges of the other shape, so that shapes smaller than the spacing of the shell's points
-//! do not slip between them.
+//! queried in the exact field of a ball, a cuboid or a half-space, and in the [`ShapeField`] of any
+//! other shape of parry, which also defines a field of surfaces without an interior. Its voxelmap
+//! is sampled at points on the edges of the other shape, so that shapes smaller than the spacing of
+//! the shell's points do not slip between them.
 
 // Rooms, each of which uses only those before it:
-// precision, shape (the asset as a shape), field (other shapes as distance fields), query (a pair is
-// asked), reduce (from all contacts to a few), manifolds and compound (what rapier stores), dispatcher.
+// precision, shape (the asset as a shape), field (other shapes as distance fields), query (about a
+// pair), reduce (from all contacts to a few), manifolds and compound (the data of rapier), dispatcher.
 #![forbid(unsafe_code)]
 
 #[cfg(all(feature = "f32", feature = "f64"))]

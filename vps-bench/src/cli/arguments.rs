@@ -30,7 +30,7 @@ pub(super) enum Command {
     List,
     /// Fetch the models, all of them or those named
     Fetch { models: Vec<String> },
-    /// Run experiments; what was run before by the same program with the same settings is kept
+    /// Run experiments; records of the same program with the same settings are kept
     Run {
         /// Names of experiments: files in the folder of experiments without `.toml`
         #[arg(required = true)]
@@ -40,7 +40,7 @@ pub(super) enum Command {
         /// Another model: a name in models.toml or the path of a mesh
         #[arg(long)]
         model: Option<String>,
-        /// Metres a unit of that model is long
+        /// Length of a unit of that model, in metres
         #[arg(long, requires = "model")]
         scale: Option<f64>,
     },
@@ -50,12 +50,11 @@ pub(super) enum Command {
         /// A file to put tables into, between `<!-- NAME -->` and `<!-- /NAME -->`
         #[arg(long)]
         splice: Option<PathBuf>,
-        /// Write nothing; fail if that file or the report is not what it should be
+        /// Write nothing; fail if that file or the report is out of date
         #[arg(long, requires = "splice")]
         check: bool,
     },
-    /// Judge the claims; fails if one turned out otherwise than the experiments say, but not of
-    /// quick runs
+    /// Judge the claims; fails if a verdict is not the expected one, except in quick runs
     Check { names: Vec<String> },
     /// Times in folder B as ratios of those in folder A, such as of two machines
     Compare {
@@ -65,8 +64,8 @@ pub(super) enum Command {
         #[arg(long)]
         csv: bool,
     },
-    /// Fetch, run and report everything, then check the claims; of a part of the jobs there is no
-    /// report until the other parts are there
+    /// Fetch, run and report everything, then check the claims; a shard of the jobs gives no report
+    /// until the other shards are there
     Reproduce {
         #[command(flatten)]
         selection: SelectionArguments,

@@ -240,7 +240,7 @@ pub(crate) fn csv(comparisons: &[Comparison]) -> Result<String, Error> {
 impl Comparison {
     /// Extremes are left out: they depend more on the system than on the algorithm.
     fn table(&self) -> Table {
-        let head = ["table", "what", "time", "A", "B", "B / A"];
+        let head = ["table", "row", "time", "A", "B", "B / A"];
         let mut table = Table::new("Times of B against those of A", &head);
         let is_extreme = |r: &&Ratio| r.column.ends_with("_min") || r.column.ends_with("_max");
         for ratio in self.ratios.iter().filter(|r| !is_extreme(r)) {

@@ -68,7 +68,7 @@ fn section(section: &Section) -> String {
 /// A row for each claim.
 pub(super) fn verdicts(verdicts: &[&Verdict]) -> Table {
     let mut table = Table::new(
-        "What becomes of the claims",
+        "Verdicts on the claims",
         &["claim", "source", "paper", "here", "holds if", "verdict"],
     );
     for verdict in verdicts {

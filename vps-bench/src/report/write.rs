@@ -90,7 +90,7 @@ fn section(
     let mut blocks = experiment.present(&results.tables, algorithms, folder)?;
     if !results.made_with.failures.is_empty() {
         let failures = results.made_with.failures.join("; ");
-        blocks.push(Block::Text(format!("What failed: {failures}.")));
+        blocks.push(Block::Text(format!("Failed: {failures}.")));
     }
     Ok(Section {
         name: results.name.clone(),

@@ -110,7 +110,7 @@ fn an_algorithm_that_fails_gives_a_row_and_the_rest_goes_on() {
     assert!(
         project
             .read("reports/report.md")
-            .contains("What failed: vps_tiny: ")
+            .contains("Failed: vps_tiny: ")
     );
     let said = project.bench(&["run", "fall", "--quick"]);
     assert!(said.out.contains("1 jobs run, 3 kept"), "{}", said.out);

@@ -33,7 +33,7 @@ fn what_is_wrong_is_said_in_one_line() {
     wrong(
         "algorithm = \"hull\"",
         "algorithm = \"none\"",
-        &["`none` is none of"],
+        &["`none` is not one of"],
     );
     wrong(
         "[[claim]]",

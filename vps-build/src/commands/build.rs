@@ -22,10 +22,10 @@ pub(crate) struct BuildArgs {
     /// The object of an OBJ file, in place of all
     #[arg(long)]
     object: Option<String>,
-    /// Where the asset goes
+    /// File of the asset
     #[arg(short, long, value_name = "FILE.vps")]
     output: PathBuf,
-    /// Metres a unit of the file is long
+    /// Length of a unit of the file, in metres
     #[arg(long, default_value_t = 1.0)]
     scale: f64,
     /// Edge of a voxel in metres, after scaling
@@ -37,7 +37,7 @@ pub(crate) struct BuildArgs {
     /// Outer layers of voxels around the mesh
     #[arg(long, default_value_t = 4)]
     margin: u32,
-    /// How many points the pointshell gets, to within 2 %
+    /// Points of the pointshell, to within 2 %
     #[arg(long, default_value_t = 10_000)]
     points: u32,
     /// Distance between points in metres, in place of their number
@@ -46,16 +46,16 @@ pub(crate) struct BuildArgs {
     /// Children of a cluster, K
     #[arg(short = 'k', long, default_value_t = 4)]
     branching: u32,
-    /// How points are put into clusters
+    /// Clustering of points
     #[arg(long, value_enum, default_value_t = ClusteringName::Bisect)]
     clustering: ClusteringName,
-    /// What the voxels hold
+    /// Encoding of the values
     #[arg(long, value_enum, default_value_t = EncodingName::Distances)]
     encoding: EncodingName,
     /// Decimal places a distance in metres keeps [default: as many as fit 16 bits]
     #[arg(long)]
     precision: Option<i32>,
-    /// How the mesh point closest to a voxel is found
+    /// Search for the point of the mesh closest to a voxel
     #[arg(long, value_enum, default_value_t = ClosestName::Exact)]
     closest: ClosestName,
     /// Whether all voxels are stored
@@ -67,16 +67,16 @@ pub(crate) struct BuildArgs {
     /// Seed of bottom-up clustering
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Most memory voxels and points may take while building, in MiB
+    /// Most memory for voxels and points during the build, in MiB
     #[arg(long, default_value_t = 4096, value_name = "MIB")]
     memory_limit: u64,
     /// Threads to work with; the asset does not depend on it [default: one a core]
     #[arg(long)]
     threads: Option<usize>,
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
-    /// Say what was built for machines
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }
@@ -113,7 +113,7 @@ enum StoreName {
     Auto,
     /// One value a voxel
     Dense,
-    /// Only what cannot be interpolated to within a voxel size
+    /// Only voxels that cannot be interpolated to within one voxel size
     Sparse,
 }
 
@@ -125,7 +125,7 @@ enum SignName {
     Winding,
     /// By generalised winding numbers, with holes left open
     Generalized,
-    /// What cannot be reached from outside is inside, however faces are turned
+    /// By a flood fill from outside, whatever the orientation of faces: voxels not reached are inside
     Fill,
 }
 
@@ -215,7 +215,7 @@ pub(crate) fn run(args: &BuildArgs) -> Result<(), Error> {
             Stage::Tree => "growing the tree",
         });
     };
-    // The pool's threads do not share what shows the progress.
+    // The threads of the pool do not share the progress bar.
     let built = pool.install(|| build(&mesh, &args.options(), &on_stage));
     let built = built.map_err(|e| named(&e))?;
     let built_at = Instant::now();
@@ -313,7 +313,7 @@ fn frame(origin: [f64; 3]) -> String {
 /// How the inside was found, and the repairs, in words.
 fn sign(name: SignName, repairs: &Repairs) -> String {
     let method = match name {
-        SignName::Fill => "by what cannot be reached from outside",
+        SignName::Fill => "by a flood fill from outside",
         _ if repairs.is_none() => return "the mesh is watertight".into(),
         _ if repairs.left_open => "by generalised winding numbers, holes left open",
         _ => "by winding numbers",

@@ -14,14 +14,14 @@ use super::Error;
 pub(crate) struct ExportArgs {
     /// The asset
     file: PathBuf,
-    /// Which part of it
+    /// The part of it to export
     #[arg(long)]
     what: What,
     /// Level of the tree, 1 being the top: its parent points, or its balls [default: all points,
     /// coloured by the highest level they stand for; the balls of the leaves]
     #[arg(long)]
     level: Option<u32>,
-    /// Where it goes
+    /// The PLY file
     #[arg(short, long, value_name = "OUT.ply")]
     output: PathBuf,
 }

@@ -17,13 +17,13 @@ pub(crate) struct InspectArgs {
     /// The object of an OBJ file, in place of all
     #[arg(long)]
     object: Option<String>,
-    /// Metres a unit of a mesh is long
+    /// Length of a unit of a mesh, in metres
     #[arg(long, default_value_t = 1.0)]
     scale: f64,
     /// Walls thinner than this are counted, in metres [default: a hundredth of the longest side]
     #[arg(long)]
     voxel_size: Option<f64>,
-    /// For machines
+    /// Print the properties as JSON
     #[arg(long)]
     json: bool,
 }
@@ -142,11 +142,7 @@ fn asset_rows(asset: &Asset<'_>) -> Vec<Row> {
         ("high_m", place(map.solid().max), "and highest"),
         ("voxels", json!(map.grid().dims()), ""),
         ("voxel_size_m", json!(map.grid().voxel_size()), ""),
-        (
-            "sigma_m",
-            json!(map.sigma()),
-            "what a step of a value is worth",
-        ),
+        ("sigma_m", json!(map.sigma()), "metres per step of a value"),
         (
             "near_error_m",
             json!(error_bounds.in_band),

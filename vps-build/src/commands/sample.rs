@@ -17,7 +17,7 @@ pub(crate) struct SampleArgs {
     /// A CSV file with the columns x, y and z, in metres in the coordinates of the mesh
     #[arg(long, value_name = "IN.csv")]
     points: PathBuf,
-    /// Where the result goes: `penetration_m` (negative outside) is within `error_bound_m` of the
+    /// The CSV file of results: `penetration_m` (negative outside) is within `error_bound_m` of the
     /// exact one, and the solid is closer or deeper by no more than `overestimate_bound_m`. Outside of
     /// the grid the distance is a lower bound, and the first of the two grows with it
     #[arg(short, long, value_name = "OUT.csv")]

@@ -188,7 +188,7 @@ mod tests {
         assert!(!apart.contains(DVec3::X * 1.5));
         let one = of_two(0.5);
         assert!(one.repairs().merged);
-        // In both balls, and deep in what they are together.
+        // In both balls, and deep in their union.
         let depth = one.penetration(DVec3::X * 0.25, 0).penetration_m;
         assert!((depth - 0.94).abs() < 0.05, "{depth}");
     }

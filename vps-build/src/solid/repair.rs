@@ -33,7 +33,7 @@ pub struct Repairs {
     /// Whether parts still overlap because their union failed. Depths near faces within the solid
     /// are then too small.
     pub still_overlapping: bool,
-    /// Whether holes were left open and generalised winding numbers decided what is inside.
+    /// Whether holes were left open, and generalised winding numbers decided on inside and outside.
     pub left_open: bool,
 }
 

@@ -50,7 +50,7 @@ pub(super) fn layout(surface: &Mesh) -> Layout {
     }
 }
 
-/// Why present is no union.
+/// Why there is no union.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum UnionError {
     /// The solid is empty.

@@ -37,7 +37,7 @@ struct Node {
 /// Set in a child index that is a triangle slot.
 const LEAF_BIT: u32 = 1 << 31;
 
-/// From how many triangles on a build_subtree is worth a task of its own.
+/// Triangles from which a subtree is built as a task of its own.
 const PARALLEL_TRIANGLES: usize = 2048;
 
 /// Most triangles for which a disc is fitted to every corner.
@@ -291,7 +291,7 @@ fn bounds(items: &[BoundedTriangle]) -> (Vec3, Vec3) {
     })
 }
 
-/// Sorts the triangles of a build_subtree and appends its nodes, the root first.
+/// Sorts the triangles of a subtree and appends its nodes, the root first.
 fn build_subtree(
     centred: &Centred<'_>,
     items: &mut [BoundedTriangle],

@@ -4,7 +4,7 @@ use glamx::{DVec3, I64Vec3};
 
 use super::triangle_box;
 
-/// The steps to the 26 cells neighbours_26 one, those that share a face first.
+/// The steps to the 26 neighbours of a cell, those that share a face first.
 pub(crate) const NEIGHBOURS_26: [[i32; 3]; 26] = neighbours_26();
 
 const fn neighbours_26() -> [[i32; 3]; 26] {

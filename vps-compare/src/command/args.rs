@@ -21,29 +21,29 @@ pub(crate) struct Args {
     /// [default: random ones]
     #[arg(long, value_name = "POSES.csv")]
     pub(super) poses: Option<PathBuf>,
-    /// How many random poses: orientation and direction are random, and B is moved along the
+    /// Number of random poses: orientation and direction are random, and B is moved along the
     /// direction to where it first touches A, and from there evenly up to the spread away from A or
     /// into it
     #[arg(long, value_name = "N", default_value_t = 50, conflicts_with = "poses")]
     pub(super) random: usize,
-    /// What the random poses start from
+    /// Seed of the random poses
     #[arg(long, default_value_t = 1, conflicts_with = "poses")]
     pub(super) seed: u64,
-    /// How far random poses are from touching, in metres [default: 5 % of the longest side of the
+    /// Largest distance or depth of random poses, in metres [default: 5 % of the longest side of the
     /// smaller mesh]
     #[arg(long, value_name = "METRES", conflicts_with = "poses")]
     pub(super) spread: Option<f64>,
-    /// Metres a unit of mesh A is long
+    /// Length of a unit of mesh A, in metres
     #[arg(long, default_value_t = 1.0)]
     pub(super) scale_a: f64,
-    /// Metres a unit of mesh B is long
+    /// Length of a unit of mesh B, in metres
     #[arg(long, default_value_t = 1.0)]
     pub(super) scale_b: f64,
-    /// How far ahead contacts are asked for, in metres [default: 2 % of the longest side of the
-    /// smaller mesh]
+    /// Prediction: the distance up to which contacts are queried, in metres [default: 2 % of the
+    /// longest side of the smaller mesh]
     #[arg(long, value_name = "METRES")]
     pub(super) prediction: Option<f64>,
-    /// How deep or how far apart solids must be for a wrong answer to count, in metres [default:
+    /// Depth or distance from which a wrong answer counts, in metres [default:
     /// 0.1 % of the longest side of the smaller mesh]
     #[arg(long, value_name = "METRES")]
     pub(super) tolerance: Option<f64>,
@@ -70,13 +70,13 @@ pub(crate) struct Args {
     /// (on Linux)
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
     pub(super) memory_limit: u64,
-    /// How often each query is timed, at most; the least counts
+    /// Most timings of each query; the shortest counts
     #[arg(long, default_value_t = 5)]
     pub(super) repeat: u32,
-    /// Where a row for each pose and algorithm goes
+    /// CSV file with a row for each pose and algorithm
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
-    /// The summary for machines
+    /// Print the summary as JSON
     #[arg(long)]
     pub(super) json: bool,
     /// The algorithm to work for, in a process that this command has started
@@ -84,7 +84,7 @@ pub(crate) struct Args {
     pub(super) worker: Option<Name>,
 }
 
-/// What tells inside from outside, as `vps-build build` has it.
+/// Classification of inside and outside, as in `vps-build build`.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum SignName {
     /// By winding numbers, generalised ones if the mesh has more holes than faces
@@ -93,7 +93,7 @@ pub(super) enum SignName {
     Winding,
     /// By generalised winding numbers, with holes left open: nothing is exact then
     Generalized,
-    /// What cannot be reached from outside is inside, however faces are turned
+    /// By a flood fill from outside, whatever the orientation of faces: voxels not reached are inside
     Fill,
 }
 

@@ -93,7 +93,7 @@ impl Comparison {
             [false, false] => None,
         };
         let open = open.map(|which| {
-            format!("holes of {which} were left open, so that what is inside is a guess")
+            format!("holes of {which} were left open, so that inside and outside are a guess")
         });
         let given_up = most(&uncertain).map(|most| {
             format!(

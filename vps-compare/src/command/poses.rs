@@ -51,15 +51,16 @@ pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
         for ((value, place), column) in values.iter_mut().zip(places).zip(COLUMNS) {
             let text = &record[place];
             let number = text.parse().ok().filter(|n: &f32| n.is_finite());
-            *value = number
-                .ok_or_else(|| format!("{name}:{line}: {column}: `{text}` is no finite number"))?;
+            *value = number.ok_or_else(|| {
+                format!("{name}:{line}: {column}: `{text}` is not a finite number")
+            })?;
         }
         let [x, y, z, qx, qy, qz, qw] = values;
         let rotation = Rotation::from_xyzw(qx, qy, qz, qw);
         let length = rotation.length();
         if (length - 1.0).abs() > LENGTH_TOLERANCE {
             return Err(format!(
-                "{name}:{line}: qx, qy, qz, qw is no rotation: its length must be 1, not {length}"
+                "{name}:{line}: qx, qy, qz, qw is not a rotation: its length must be 1, not {length}"
             )
             .into());
         }

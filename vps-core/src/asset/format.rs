@@ -40,7 +40,7 @@
 //! | 24..36 | voxels along x, y, z (u32) |
 //! | 36..48 | lowest corner of the grid (f32, as all that follow) |
 //! | 48..52 | voxel size s |
-//! | 52..56 | σ, what a step of a value is worth |
+//! | 52..56 | σ, metres per step of a value |
 //! | 56..80 | lowest and highest corner of the box of the mesh |
 //! | 80..92 | largest error in the narrow band, largest error beyond it, half width of the band (see [`ErrorBounds`]) |
 //! | 92..132 | [`MassProperties`]: volume, centre, inertia xx, yy, zz, xy, xz, yz |
@@ -114,7 +114,7 @@ pub enum FormatError {
     #[error("a .vps file of version {0}, but this library reads {VPS_VERSION}: build it again")]
     Version(u64),
     /// The file is shorter or longer than its header states.
-    #[error("the file has {found} bytes, but its header speaks of {expected}")]
+    #[error("the file has {found} bytes, but its header declares {expected}")]
     Length {
         /// Bytes the header asks for.
         expected: u64,

@@ -29,7 +29,9 @@ pub enum GridError {
     #[error("the origin of the grid is not finite: {0}")]
     Origin(Vec3),
     /// The grid has no voxel, or too many to index.
-    #[error("{0} x {1} x {2} voxels are none, or more than 2^31 in all or 2^23 along an axis")]
+    #[error(
+        "a grid of {0} x {1} x {2} voxels is empty, or exceeds 2^31 voxels in all or 2^23 along an axis"
+    )]
     Dims(u32, u32, u32),
 }
 

@@ -1,4 +1,4 @@
-//! Shapes as distance fields: what the shell of a VPS shape is asked against.
+//! Shapes as distance fields, in which the shell of a VPS shape is queried.
 //!
 //! [`shape_field`] makes a field of any shape of parry; [`surface_field`] does so for triangle meshes
 //! and height fields, from their triangles near the shell ([`surface`], [`facet`], [`adjacency`],

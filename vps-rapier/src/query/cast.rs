@@ -30,7 +30,7 @@ const NEAR_STRIDE: f32 = 0.125;
 /// The same relative to the thickness of the thinner shape.
 const THICKNESS_STRIDE: f32 = 0.25;
 
-/// Share of the closing speed below which contacts pass each other instead of approaching.
+/// Fraction of the closing speed below which contacts pass each other instead of approaching.
 const GRAZING: f32 = 1e-3;
 
 /// Components of unit normals below this are rounding.

@@ -15,7 +15,7 @@ const MIN_THICKNESS: f32 = 2.0;
 /// Cosine between normals above which contacts are of the same surface for a cast.
 const SAME_SURFACE_COSINE: f32 = 0.9;
 
-/// Everything a pair of shapes is asked with.
+/// The shells, fields and edges that answer queries about a pair of shapes.
 pub(crate) struct Pair<'s> {
     /// A shell in the field of the other shape.
     primary: ShellInField<'s>,

@@ -56,7 +56,7 @@ fn spread(contacts: &[PairContact]) -> f32 {
         .sum()
 }
 
-/// What identifies a contact in the next step.
+/// The identity of a contact in the next step.
 pub(crate) struct ContactKey {
     ids: [PackedFeatureId; 2],
     /// On the first shape, in its frame, in metres.

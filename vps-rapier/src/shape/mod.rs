@@ -1,5 +1,4 @@
-//! The collision shape: an asset as a shape of parry, where it comes from, and what can be asked of it
-//! alone.
+//! The collision shape: an asset as a shape of parry, its construction, and queries about it alone.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

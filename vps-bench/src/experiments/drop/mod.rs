@@ -174,7 +174,7 @@ impl Experiment for Settings {
         let named = self.paper_value.iter().map(|value| &value.algorithm);
         for name in named.chain(&self.reference) {
             if !self.algorithms.contains(name) {
-                return Err(format!("`{name}` is none of drop.algorithms"));
+                return Err(format!("`{name}` is not one of drop.algorithms"));
             }
         }
         Ok(())

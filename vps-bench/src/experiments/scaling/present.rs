@@ -25,7 +25,7 @@ pub(super) fn present(
     };
     let mut all = Table::new(
         "Slopes: the power of the size that time grows with",
-        &["size", "what", "slope", "slope by contacts"],
+        &["size", "query", "slope", "slope by contacts"],
     );
     for row in rows(slopes) {
         let case = Case::ALL.into_iter().find(|c| c.name() == row.text("case"));
@@ -67,7 +67,14 @@ pub(super) fn present(
             y,
         };
         blocks.push(figure(&labels, series, folder)?);
-        let head = [case.label(), "what", "median µs", "mean", "p95", "contacts"];
+        let head = [
+            case.label(),
+            "query",
+            "median µs",
+            "mean",
+            "p95",
+            "contacts",
+        ];
         let mut table = Table::new(title.clone(), &head);
         for row in of_case() {
             // Depths are 32-bit numbers and have no more digits.

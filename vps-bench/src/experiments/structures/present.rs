@@ -42,7 +42,7 @@ pub(super) fn present(
 
 fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
     let mut table = Table::new(
-        "Voxelmaps by what a voxel holds and which voxels are stored",
+        "Voxelmaps by encoding and store",
         &[
             "holds",
             "stored",
@@ -51,7 +51,7 @@ fn voxelmaps<'f>(rows: impl Iterator<Item = Row<'f>>) -> Table {
             "size, MB",
             "surface and inside, s",
             "distances, s",
-            "error bound, mm: near / elsewhere",
+            "error bound, mm: in the narrow band / beyond",
         ],
     );
     for row in rows {

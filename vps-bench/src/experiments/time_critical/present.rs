@@ -91,7 +91,7 @@ impl Presentation<'_> {
             &[
                 "points tested at most",
                 "complete",
-                "penetration, mm too little",
+                "penetration underestimated, mm",
                 "bound, mm too much",
                 "force, % off",
                 "time, µs",
@@ -119,7 +119,7 @@ impl Presentation<'_> {
     fn deadlines(&self, algorithm: &str) -> Result<Block, Error> {
         let mut table = Table::new(
             format!(
-                "{}: deadlines, the query being told to end {} µs before",
+                "{}: deadlines, the query stopped {} µs before",
                 self.label(algorithm)?,
                 self.settings.reserve_us
             ),
@@ -131,7 +131,7 @@ impl Presentation<'_> {
                 "late by itself",
                 "idle loop: overruns",
                 "longest, µs late",
-                "penetration, mm too little",
+                "penetration underestimated, mm",
                 "force, % off",
             ],
         );

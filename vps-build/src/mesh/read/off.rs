@@ -54,7 +54,7 @@ fn by_lines(text: &[u8]) -> Result<Mesh, Fault> {
     for i in 0..vertices {
         let (line, words) = lines.next_words().ok_or_else(|| {
             Fault::of_file(format!(
-                "the header speaks of {vertices} vertices, but there are {i}"
+                "the header declares {vertices} vertices, but there are {i}"
             ))
         })?;
         polygons.push_vertex(coordinates(line, words)?, line);
@@ -62,7 +62,7 @@ fn by_lines(text: &[u8]) -> Result<Mesh, Fault> {
     for i in 0..faces {
         let (line, mut words) = lines.next_words().ok_or_else(|| {
             Fault::of_file(format!(
-                "the header speaks of {faces} faces, but there are {i}"
+                "the header declares {faces} faces, but there are {i}"
             ))
         })?;
         let fault = |what: String| Fault::of_line(line, what);

@@ -218,7 +218,7 @@ impl Body<'_> {
         let cut_off = || {
             let (count, name) = (element.count, printable(element.name));
             Fault::of_file(format!(
-                "the header speaks of {count} elements `{name}`, but the file ends in number {n}"
+                "the header declares {count} elements `{name}`, but the file ends in number {n}"
             ))
         };
         match self {

@@ -50,7 +50,7 @@ fn binary(bytes: &[u8]) -> Result<Mesh, Fault> {
         // Unless it is UTF-16 text.
         text(bytes)?;
         return Err(Fault::of_file(format!(
-            "the header speaks of {declared} triangles, but the file holds {present}: export it again"
+            "the header declares {declared} triangles, but the file holds {present}: export it again"
         )));
     }
     let mut polygons = Polygons::counted_from(0);

@@ -76,7 +76,7 @@ pub(super) const PICTURES: [Picture; 8] = [
     },
     Picture {
         stem: "parts",
-        caption: "What algorithms make of the mesh: one convex hull, a convex decomposition, the \
+        caption: "Shapes of the algorithms for the mesh: one convex hull, a convex decomposition, the \
                   segments of the fine shell (Fig. 9). A colour each; colours come again",
         draw: parts::draw,
     },

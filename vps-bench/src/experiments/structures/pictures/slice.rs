@@ -71,7 +71,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
             color
         }
     });
-    panels.push("what is stored of each cell of 8 x 8 x 8 voxels", &canvas)?;
+    panels.push("storage of each cell of 8 x 8 x 8 voxels", &canvas)?;
     let top = SIDE + Panels::HEAD + 8;
     color_map.draw(&mut panels.sheet, [60, top])?;
     let entries = STORED.map(|(color, text)| (color, text.to_owned()));

@@ -35,7 +35,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
             View::from(25.0, 0.0, middle, 1.6 * longest),
         ),
         (
-            "the place of contact: spheres of the leaves",
+            "around the contacts: spheres of the leaves",
             tree.level_count(),
             View::from(25.0, 0.0, near, 0.42 * longest),
         ),

@@ -59,11 +59,11 @@ fn stl_as_programs_write_it() {
     };
     told(
         with(80, &[17, 0, 0, 0]),
-        "speaks of 17 triangles, but the file holds 12",
+        "declares 17 triangles, but the file holds 12",
     );
     told(
         with(80, &[7, 0, 0, 0]),
-        "speaks of 7 triangles, but the file holds 12",
+        "declares 7 triangles, but the file holds 12",
     );
     told(with(80, &[0xff, 0xff, 0xff, 0x7f]), "the file holds 12");
     told(
