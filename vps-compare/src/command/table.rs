@@ -83,8 +83,8 @@ pub(super) fn text(comparison: &Comparison) -> String {
     let _ = writeln!(
         text,
         "\nerror: deepest contact against the exact penetration, where there is a contact{uncertain}\n\
-         wrong: overlaps missed + touches that are none; \
-         ~: memory as parry counts it or as its shapes can be asked",
+         wrong: overlaps missed + false touches; \
+         ~: memory as counted by parry, or estimated from the elements of its shapes",
     );
     text
 }
