@@ -16,7 +16,7 @@ pub(crate) struct Cli {
     /// Folder of the experiments, of models.toml and algorithms.toml
     #[arg(long, global = true, default_value = "experiments")]
     pub(super) experiments: PathBuf,
-    /// Where models and assets are kept
+    /// Folder of models and assets
     #[arg(long, global = true, default_value = ".cache")]
     pub(super) cache: PathBuf,
     /// Folder of the reports
@@ -77,17 +77,17 @@ pub(super) enum Command {
 
 #[derive(clap::Args)]
 pub(super) struct SelectionArguments {
-    /// As little as shows that all works
+    /// The smallest run that covers everything
     #[arg(long)]
     quick: bool,
     /// Only jobs with this in their name, EXPERIMENT/CASE.ALGORITHM.SEED
     #[arg(long)]
     filter: Option<String>,
-    /// Only a part of the jobs, such as 2/3; copy the folders `raw` of all parts together and run
+    /// Only a shard of the jobs, such as 2/3; copy the folders `raw` of all shards together and run
     /// again for the tables
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// Leave it to the system on which core things are timed
+    /// Do not pin timed code to a core
     #[arg(long)]
     unpinned: bool,
 }
