@@ -1,4 +1,4 @@
-# What can be done here: `just --list`.
+# The commands of the project: `just --list`.
 
 set shell := ["bash", "-euo", "pipefail", "-c"]
 
@@ -20,15 +20,15 @@ fetch: build
 reproduce-paper: build
     {{ bench }} reproduce --splice README.md
 
-# The same with few starts, into target/smoke; fails if a job fails, whatever becomes of the claims
+# The same with few starts, into target/smoke; fails if a job fails, whatever the verdicts
 reproduce-smoke: build
     {{ bench }} reproduce --quick --out target/smoke
 
-# Fail if tables in the README or report.md are not those of the tables in reports; writes nothing
+# Fail if the README or report.md does not match the tables in reports; writes nothing
 readme-check:
     {{ bench }} report --splice README.md --check
 
-# Open a report in headless Chromium and fail if something in it does not show
+# Open a report in headless Chromium and fail if a part of it is not rendered
 report-check report="reports/report.html":
     .ci/report-check {{ report }} target/report-check
 
@@ -40,7 +40,7 @@ test-long times="50":
     VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-build --test it -- queries conform bounded within
     VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-rapier --test oracle
 
-# All tests, with new random cases (proptest keeps what failed: commit it)
+# All tests, with new random cases (proptest keeps the failing cases: commit them)
 test-random: (test-with "")
 
 # The harness is tested with the optimised build the experiments use.
@@ -85,7 +85,7 @@ haptics seconds="10" with="": fetch
 behaviour-report: fetch
     cargo run --locked --release --quiet -p vps-compare --example behaviour
 
-# Random bytes for the readers and the builder, so many seconds each (needs nightly and cargo-fuzz)
+# Random bytes for the readers and the builder, for the given seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build
     for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done
     for target in asset obj ply stl off solid; do \

@@ -1,4 +1,4 @@
-//! Tells the program what it was built with, for the environment of its records.
+//! Gives the program its compiler and profile, for the environment of its records.
 
 use std::path::Path;
 use std::process::Command;

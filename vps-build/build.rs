@@ -1,4 +1,4 @@
-//! Tells the library which builder it is, so that a cache holds none of an older one's assets.
+//! Gives the library the identity of its builder, so that a cache does not return assets of an older one.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;

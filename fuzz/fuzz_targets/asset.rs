@@ -1,4 +1,4 @@
-//! The reader of .vps files takes any bytes, and what it accepts can be asked anything.
+//! The reader of .vps files accepts any bytes without a panic, and so do queries on the assets it returns.
 
 #![no_main]
 

@@ -48,6 +48,6 @@ fuzz_target!(|bytes: &[u8]| {
     };
     if let Ok(built) = build(&mesh, &options, &|_| ()) {
         let bytes = encode(&built.asset);
-        Asset::from_bytes(&bytes).expect("what is built can be read");
+        Asset::from_bytes(&bytes).expect("an asset that was built can be read");
     }
 });

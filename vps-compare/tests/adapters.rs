@@ -41,7 +41,7 @@ fn all_find_a_ball_on_a_box() {
         resolution: 32,
     };
     let algorithms: [(&dyn CollisionAlgorithm, f32); 6] = [
-        // What each may be off: its hull, its spacing or its voxels.
+        // The tolerance of each: of its hull, its spacing or its voxels.
         (&vps(VpsGround::Cuboid), 0.001),
         (&vps(VpsGround::Voxelmap(options(10))), 0.001),
         (&ConvexHull, 0.004),

@@ -156,7 +156,7 @@ fn random_poses_of_all_algorithms_agree_in_table_csv_and_json() {
         assert!(algorithm["memory_bytes"].as_u64().unwrap() > 0);
         assert_eq!(algorithm["memory_is_estimate"], !name.starts_with("vps"));
     }
-    // Both shells see what the triangles do to within a voxel; the hull of a cup is no cup.
+    // Both shells agree with the triangles to within a voxel; the hull of a cup is not a cup.
     let error = |i: usize| algorithms[i]["error_max_m"].as_f64().unwrap();
     assert!(error(1) < 0.1, "{}", error(1));
 
@@ -250,7 +250,7 @@ fn what_cannot_be_prepared_is_a_row_that_says_why() {
     assert_eq!(rows.matches(",convex_hull,ok,").count(), 3, "{rows}");
 }
 
-/// Of a surface with more holes than faces the inside is a guess.
+/// The inside of a surface with more holes than faces is a guess.
 #[test]
 fn of_an_open_mesh_nothing_is_exact_and_nothing_wrong() {
     let folder = Folder::new("open");
@@ -391,7 +391,7 @@ fn options_that_messages_recommend_exist() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                // The other command speaks of its own options.
+                // The other command names its own options.
                 if !path.ends_with("vps-build/src/commands") {
                     folders.push(path);
                 }

@@ -119,7 +119,7 @@ fn revision() -> Option<String> {
         .ok()?
         .trim()
         .to_owned();
-    // Files that runs write are no changes.
+    // Files written by runs do not count as changes.
     let changes = git(&[
         "status",
         "--porcelain",

@@ -117,7 +117,7 @@ impl Claim {
         }
     }
 
-    /// A number with the unit of the claim; integers that are no ratios, such as counts, without
+    /// A number with the unit of the claim; integers other than ratios, such as counts, without
     /// digits after the point.
     pub(crate) fn with_unit(&self, value: Option<f64>) -> String {
         let is_whole = self.against.is_none() && value.is_some_and(|v| v.fract() == 0.0);

@@ -12,7 +12,7 @@ fn run_both(project: &Project, change: impl Fn()) {
 #[test]
 fn times_are_compared_by_algorithm() {
     let project = Project::new("compare");
-    // Words, and algorithms that are only in one, are no hindrance.
+    // Text columns, and algorithms in only one of the two, are ignored.
     let fall = "experiments/fall.toml";
     run_both(&project, || {
         project.edit(fall, fall, "A box falls", "A box that falls");

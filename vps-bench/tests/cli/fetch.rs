@@ -1,4 +1,4 @@
-//! Models: fetched in order, checked, kept; what is wrong with them.
+//! Models: fetched in order, checked, kept; errors of sources and files.
 
 use std::io::{Read, Write};
 use std::net::TcpListener;

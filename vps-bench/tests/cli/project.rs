@@ -88,7 +88,7 @@ expect = "holds"
 /// A folder with one experiment, `fall`, gone afterwards.
 pub(crate) struct Project(pub(crate) PathBuf);
 
-/// What the command said.
+/// The output of the command.
 pub(crate) struct Said {
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
@@ -140,7 +140,7 @@ impl Project {
         }
     }
 
-    /// The command must succeed without a word on standard error; gives what it printed.
+    /// The command must succeed without a word on standard error; returns its output.
     pub(crate) fn succeeds(&self, arguments: &[&str]) -> String {
         let said = self.bench(arguments);
         let (code, errors) = (said.code, said.errors.as_str());
@@ -148,8 +148,8 @@ impl Project {
         said.out
     }
 
-    /// The command must succeed and say one line on standard error with all of this; gives what it
-    /// printed.
+    /// The command must succeed and say one line on standard error with all of this; returns its
+    /// output.
     pub(crate) fn warns(&self, arguments: &[&str], expected: &[&str]) -> String {
         let said = self.bench(arguments);
         assert_eq!(said.code, Some(0), "{arguments:?}: {}", said.errors);

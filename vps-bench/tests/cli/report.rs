@@ -116,7 +116,7 @@ fn a_claim_that_turns_out_otherwise_fails_the_check() {
     project.succeeds(&["report"]);
     let html = project.read("reports/report.html");
     assert!(html.contains("does not hold") && html.contains("otherwise than expected"));
-    // What the project itself expects not to hold is no failure.
+    // A claim that the project expects not to hold does not fail.
     project.edit(
         fall,
         fall,

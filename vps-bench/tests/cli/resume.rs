@@ -1,4 +1,4 @@
-//! What was run before is kept, as long as it is the same.
+//! Records are kept as long as their inputs are the same.
 
 use std::fs;
 
@@ -25,7 +25,7 @@ fn what_was_run_is_kept_until_something_changes() {
     let said = project.warns(&["run", "fall", "--quick"], &expected);
     assert!(said.contains("2 jobs run, 2 kept"), "{said}");
 
-    // What is shown or claimed changes no job.
+    // Presentation and claims change no job.
     let fall = "experiments/fall.toml";
     project.edit(fall, fall, "measured_s = [0.4", "measured_s = [0.3");
     project.edit(fall, fall, "A box falls", "A box that falls");
@@ -113,7 +113,7 @@ fn of_two_runs_into_one_folder_the_second_refuses() {
     let quick = ["run", "fall", "--quick"];
     project.succeeds(&quick);
     let lock = project.path("reports/fall/raw/.lock");
-    // What a process leaves that has ended does not keep others out.
+    // The lock of a process that has ended does not keep others out.
     fs::write(&lock, "4711\n").unwrap();
     let file = fs::File::open(&lock).unwrap();
     file.try_lock().unwrap();

@@ -2,7 +2,7 @@
 
 use crate::project::{JOBS, NAMES, Project, STEPS, column};
 
-/// What must be the same in every run: where bodies are and what touches.
+/// The columns that must be the same in every run: poses and contacts.
 const POSES: [&str; 10] = [
     "queries",
     "contacts",
@@ -105,7 +105,7 @@ fn an_algorithm_that_fails_gives_a_row_and_the_rest_goes_on() {
     assert!(jobs.contains("choose larger voxels"), "{jobs}");
     let summary = project.read("reports/fall/summary.csv");
     assert_eq!(column(&summary, "algorithm"), ["vps", "hull", "trimesh"]);
-    // The report says so, and what failed is tried again.
+    // The report says so, and the failed job is tried again.
     project.succeeds(&["report"]);
     assert!(
         project

@@ -7,7 +7,7 @@ fn holds_times(name: &str) -> bool {
     name.contains("_us") || name.ends_with("_s") && name != "linear_velocity_m_s"
 }
 
-/// Both tables must be the same but for times.
+/// Both tables must be the same except for times.
 fn assert_same(a: &str, b: &str) {
     let heads = a.lines().next().unwrap();
     assert_eq!(heads, b.lines().next().unwrap());

@@ -113,7 +113,7 @@ fn options_that_messages_recommend_exist() {
     for folder in [sources.clone(), sources.join("report")] {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
-            // Properties of a style sheet are no options.
+            // Properties of a style sheet are not options.
             if path.extension().is_none_or(|e| e != "rs") {
                 continue;
             }

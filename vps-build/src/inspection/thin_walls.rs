@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(of(&plate, 0.009), ThinWalls::default());
     }
 
-    /// Sharp edges that are no walls, and gaps, are not thin.
+    /// Sharp edges and gaps do not count as thin walls.
     #[test]
     fn edges_and_gaps_are_no_walls() {
         let box_ = Mesh::cuboid([1.0, 0.1, 1.0])

@@ -333,7 +333,7 @@ proptest! {
         prop_assert!((w.torque - v.torque).length() < tolerance);
     }
 
-    /// The second body feels the reaction of what the first one feels.
+    /// The second body feels the reaction to the force on the first one.
     #[test]
     fn swapping_the_bodies_negates_the_force(
         a in bumpy_mesh(), b in bumpy_mesh(), pose in pose(0.6), prediction in 0.0..0.05_f32,

@@ -25,7 +25,7 @@ fn edge_key(vertices: &[VertexKey; 3], edge: usize) -> EdgeKey {
 }
 
 /// Sets the junctions of facets from the keys of their vertices. `degenerate` holds the triangles
-/// without an area, in any order: they are no facets, and facets at their edges meet.
+/// without an area, in any order: they are not facets, and facets at their edges meet.
 pub(crate) fn connect(
     facets: &mut [Facet],
     vertices: &[[VertexKey; 3]],

@@ -8,7 +8,7 @@ use rapier3d::pipeline::CollisionPipeline;
 
 use crate::connection::without_warning;
 
-/// A compound with some of its parts replaced; the shape itself if it is no compound.
+/// A compound with some of its parts replaced; the shape itself if it is not a compound.
 pub(super) fn replace_parts(
     shape: &SharedShape,
     mut replacement: impl FnMut(usize, &SharedShape) -> Option<SharedShape>,

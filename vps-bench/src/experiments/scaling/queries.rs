@@ -78,7 +78,7 @@ impl Settings {
                     }
                 }
             }
-            Case::Bodies => return Err("bodies are no single query".into()),
+            Case::Bodies => return Err("the case of bodies is not a single query".into()),
         }
         Ok(rows)
     }

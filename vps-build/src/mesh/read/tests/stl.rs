@@ -6,7 +6,7 @@ fn stl_as_programs_write_it() {
     let halves = text.replacen("endfacet\n", "endfacet\nendsolid\n\nsolid part two\n", 1);
     for (what, text) in [
         (
-            "normals that are no numbers",
+            "normals that are not numbers",
             text.replace("normal 0 0 0", "normal nan -1.#IND nan"),
         ),
         ("upper case", text.to_uppercase()),
@@ -47,7 +47,7 @@ fn stl_as_programs_write_it() {
         ),
         ("a full header", with(0, &[b'x'; 80])),
         ("bytes behind", [binary_stl(), vec![1; 7]].concat()),
-        ("normals that are no numbers", normals),
+        ("normals that are not numbers", normals),
         ("an unknown count", with(80, &[0xff; 4])),
         ("no count", with(80, &[0; 4])),
     ] {
