@@ -220,7 +220,7 @@ fn poses_of_a_file_and_one_algorithm() {
 }
 
 #[test]
-fn what_cannot_be_prepared_is_a_row_that_says_why() {
+fn a_failed_preparation_is_a_row_with_the_reason() {
     let folder = Folder::new("rows");
     let [cup, ball] = folder.meshes();
     let csv_path = folder.path("rows.csv");

@@ -44,7 +44,7 @@ fn two_balls() {
 
 /// The search ends before it is sure, and says by how much it may be wrong.
 #[test]
-fn what_is_uncertain_is_so_by_a_finite_length() {
+fn uncertainties_are_finite() {
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let base = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
     let vertices = [&base[..], &[DVec3::new(0.5, 0.5, 0.01)]].concat();

@@ -248,7 +248,7 @@ fn a_character_with_balls_pushes_vps_bodies() {
 
 /// A fast cast along a floor, with less room than the target distance, meets the wall at its end.
 #[test]
-fn what_slides_along_a_floor_meets_the_wall() {
+fn a_body_that_slides_along_a_floor_meets_the_wall() {
     let (world, _) = world_of(RigidBodyBuilder::fixed(), &vps_ground());
     let ball = SharedShape::ball(0.05);
     for height in [0.045, 0.05, 0.055, 0.062, 0.1] {

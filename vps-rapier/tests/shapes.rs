@@ -63,7 +63,7 @@ fn a_shape_is_built_from_triangles_in_the_background_and_kept() {
 }
 
 #[test]
-fn what_is_no_mesh_is_an_error() {
+fn invalid_meshes_are_errors() {
     let corner = Vector::ZERO;
     let error = VpsShapeBuilder::from_triangles(&[corner; 3], &[[0, 1, 3]]).unwrap_err();
     assert!(matches!(error, ShapeError::Mesh(_)), "{error}");

@@ -93,7 +93,7 @@ fn grounds() -> Vec<(&'static str, SharedShape)> {
 }
 
 #[test]
-fn nothing_holds_back_what_slides_on_level_ground() {
+fn bodies_slide_freely_on_level_ground() {
     let block = Mesh::cuboid([0.2, 0.1, 0.2]).unwrap();
     let bodies: [(&str, SharedShape); 2] = [
         ("4000 points", VpsShape::new(asset(&block, 4000)).into()),

@@ -135,7 +135,7 @@ fn a_saved_world_with_clusters_is_as_good_as_one_of_parry() {
 }
 
 #[test]
-fn what_was_changed_before_a_snapshot_is_changed_after_it() {
+fn changes_before_a_snapshot_survive_it() {
     let block: SharedShape = VpsShape::new(asset(&Mesh::cuboid([0.3; 3]).unwrap(), 500)).into();
     let mut world = world(false);
     drop_all(&mut world, &[block]);

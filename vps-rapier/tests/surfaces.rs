@@ -84,7 +84,7 @@ fn any(reach: f32) -> impl Strategy<Value = Vec3> {
 
 proptest! {
     #[test]
-    fn what_is_near_is_enough(
+    fn nearby_triangles_are_enough(
         which in 0..5_usize, middle in any(1.0), half in any(0.3), inside in any(1.0), reach in 0.08..0.3_f32,
     ) {
         let shape = &shapes()[which];

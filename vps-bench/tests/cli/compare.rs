@@ -57,7 +57,7 @@ fn times_are_compared_by_algorithm() {
 }
 
 #[test]
-fn what_is_not_the_same_is_not_compared() {
+fn runs_that_differ_are_not_compared() {
     let fall = "experiments/fall.toml";
     let algorithms = "experiments/algorithms.toml";
     let project = Project::new("compare-other");

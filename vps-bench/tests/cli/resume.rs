@@ -5,7 +5,7 @@ use std::fs;
 use crate::project::{Project, STEPS, column};
 
 #[test]
-fn what_was_run_is_kept_until_something_changes() {
+fn records_are_kept_until_an_input_changes() {
     let project = Project::new("resume");
     project.succeeds(&["run", "fall", "--quick"]);
     let runs = |expected: &str| {

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::project::{BOX, Project};
 
 #[test]
-fn what_is_wrong_is_said_in_one_line() {
+fn errors_are_one_line() {
     let project = Project::new("wrong");
     let missing = ["experiments/missing.toml", "No such file"];
     project.fails(2, &["run", "missing"], &missing);

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_32_bits_is_refused() {
+    fn sizes_beyond_32_bits_are_refused() {
         for size in [1e9, 1e-12] {
             let mesh = Mesh::cuboid([size; 3]).unwrap();
             let error = mass_properties(&mesh).unwrap_err();

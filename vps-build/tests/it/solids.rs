@@ -313,7 +313,7 @@ fn a_collapsed_facet_may_stand_before_an_open_box() {
 /// A surface with two coincident sides encloses nothing, however it is cut. Nor does an open one
 /// that is flat up to noise, wherever the voxels lie.
 #[test]
-fn what_has_no_inside_is_refused() {
+fn meshes_without_an_inside_are_refused() {
     let (outside, inside) = (
         askew_box([0.0; 3], [1.0; 3], false),
         askew_box([0.0; 3], [1.0; 3], true),

@@ -124,7 +124,7 @@ mod tests {
     use vps_core::Vec3;
 
     #[test]
-    fn what_was_drawn_is_in_the_file() {
+    fn a_written_sheet_holds_its_drawing() {
         let path =
             std::env::temp_dir().join(format!("vps-figure-sheet-{}.png", std::process::id()));
         let mut canvas = Canvas::new(20, 20);
