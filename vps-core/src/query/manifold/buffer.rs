@@ -3,6 +3,7 @@
 use wide::f32x4;
 
 use super::collectors::BestCandidate;
+use super::polygon::Polygon;
 use super::weighting::{DepthWeighting, MIN_FILL_WEIGHT, MIN_WEIGHT};
 use crate::query::collectors::{Collector, DeepestContact, TestedPoints};
 use crate::query::contact::Contact;
@@ -63,8 +64,9 @@ impl CandidateBuffer {
         }
     }
 
-    /// Adds the candidates to a collector. Those with the highest score before the weight of their
-    /// normal come first, so that few others can exceed the threshold.
+    /// Adds the candidates to a collector. The batch with the highest score before the weight of its
+    /// normal comes first, so that few others can exceed the threshold. Scores are computed twice,
+    /// which costs less than memory for all of them.
     #[inline(always)]
     pub(super) fn add_to<const N: usize>(
         &self,
@@ -72,30 +74,23 @@ impl CandidateBuffer {
         best: &mut BestCandidate<'_, N>,
     ) {
         let candidates = &self.candidates[..self.len];
-        let mut scores = [f32x4::ZERO; CAPACITY];
-        let mut max_score = f32x4::splat(best.threshold);
-        for (batch, scores) in candidates.iter().zip(&mut scores) {
-            *scores = best
-                .polygon
-                .scores(batch.positions(tree), batch.penetrations());
-            max_score = max_score.fast_max(*scores);
+        let scores_in = |batch: &Batch, polygon: &Polygon<N>| {
+            polygon.scores(batch.positions(tree), batch.penetrations())
+        };
+        let (mut max_score, mut first) = (best.threshold, 0);
+        for (i, batch) in candidates.iter().enumerate() {
+            let scores = scores_in(batch, best.polygon).to_array();
+            let highest = scores.into_iter().fold(max_score, f32::max);
+            if highest > max_score {
+                (max_score, first) = (highest, i);
+            }
         }
-        let max_score = max_score
-            .to_array()
-            .into_iter()
-            .fold(best.threshold, f32::max);
-        for is_second_pass in [false, true] {
-            for (batch, scores) in candidates.iter().zip(scores) {
-                let min_score = if is_second_pass {
-                    best.threshold
-                } else {
-                    max_score
-                };
-                for lane in lanes_in(scores.simd_ge(f32x4::splat(min_score))) {
-                    let penetration = batch.penetrations[lane];
-                    let contact = Contact::of(tree, batch.first + lane as u32, penetration);
-                    best.consider(contact, scores.to_array()[lane]);
-                }
+        for batch in candidates[first..].iter().chain(&candidates[..first]) {
+            let scores = scores_in(batch, best.polygon);
+            for lane in lanes_in(scores.simd_ge(f32x4::splat(best.threshold))) {
+                let penetration = batch.penetrations[lane];
+                let contact = Contact::of(tree, batch.first + lane as u32, penetration);
+                best.consider(contact, scores.to_array()[lane]);
             }
         }
     }

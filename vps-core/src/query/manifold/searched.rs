@@ -37,10 +37,13 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             prediction: self.prediction,
             approach: self.approach,
         };
-        let mut buffer = CandidateBuffer::new(weighting);
-        self.collect_from_hint(&mut buffer);
-        buffer.discard_shallow();
-        let deepest = buffer.deepest.found;
+        let mut source = SearchedCandidates {
+            query: self,
+            buffer: CandidateBuffer::new(weighting),
+        };
+        self.collect_from_hint(&mut source.buffer);
+        source.buffer.discard_shallow();
+        let deepest = source.buffer.deepest.found;
         let along = |deepest: &Contact| {
             let at = self.rotation * deepest.position + self.translation;
             let inward = self.rotation.transpose() * self.field.inward_direction(at);
@@ -49,10 +52,6 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             } else {
                 inward
             }
-        };
-        let mut source = SearchedCandidates {
-            query: self,
-            buffer,
         };
         ContactManifold::select(deepest, along, weighting, &mut source)
     }
