@@ -96,6 +96,8 @@ fuzz seconds="100": build
 # Formatting, lints and documentation, warnings being errors
 check:
     cargo fmt --all --check
+    # Modules of a macro, which cargo does not find.
+    rustfmt --check --edition 2024 vps-compare/src/algorithms/*.rs
     cargo clippy --locked --workspace --all-targets -- -D warnings
     cargo clippy --locked -p vps-core --no-default-features --features libm -- -D warnings
     cargo clippy --locked -p vps-rapier --all-targets --no-default-features --features f64,serde,debug-render -- -D warnings

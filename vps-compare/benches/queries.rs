@@ -18,11 +18,11 @@ use vps_build::{
     write_atomically,
 };
 use vps_compare::{
-    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Ground, Prepared, Scene,
-    Trimesh, Vps, VpsGround,
+    CollisionAlgorithm, Contacts, ConvexDecomposition, ConvexHull, Dispatcher, Ground, Memory,
+    Prepared, Scene, Trimesh, Vps,
 };
 use vps_core::{Asset, Contact, DistanceField, PointSphereTree, Query, Trilinear, Weight, Work};
-use vps_rapier::{Manifolds, Sampling, VpsDispatcher, VpsShape};
+use vps_rapier::{VpsDispatcher, VpsShape};
 
 /// How far ahead contacts are asked for in metres: rapier's default.
 const PREDICTION: f32 = 0.02;
@@ -59,34 +59,32 @@ fn shell(mesh: &Mesh, points: u32) -> Arc<Asset<'static>> {
     Arc::new(asset(mesh, &bunny_options(PointCount::About(points))))
 }
 
-fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: VpsGround) -> Prepared {
+/// The pointshell on the ground, which is an exact box or a voxelmap.
+fn vps(mesh: &Mesh, shell: &Arc<Asset<'static>>, ground: Option<Density>) -> Prepared {
     let scene = Scene {
         body: mesh,
         ground: Ground::Cuboid(GROUND),
     };
+    let vps = Vps {
+        ground_voxel_size_m: ground.map(|_| 0.005),
+        ..Vps::default()
+    };
     // The body's is built once for all grounds.
-    let body = bunny_options(PointCount::About(shell.tree.point_count() as u32));
     let assets = |mesh: &Mesh, options: &BuildOptions| {
-        Ok(if *options == body {
+        Ok(if *options == vps.build_options() {
             shell.clone()
         } else {
-            Arc::new(asset(mesh, options))
+            let density = ground.unwrap_or_default();
+            Arc::new(asset(mesh, &ground_options(density)))
         })
     };
-    let vps = Vps {
-        body: body.clone(),
-        ground,
-        sampling: Sampling::Trilinear,
-        manifolds: Manifolds::Reduced,
-        assets: &assets,
-    };
-    vps.prepare(&scene).expect("a sound scene")
+    vps.prepare_with(&scene, &assets).expect("a sound scene")
 }
 
 /// Poses of a bunny that fell on the ground, as VPS has it: in ten runs from different starts, five steps one after
 /// the other at 1.5 and at 2.5 seconds, as bodies of the ground's frame.
 fn rolling(mesh: &Mesh, shell: &Arc<Asset<'static>>) -> Vec<Pose> {
-    let prepared = vps(mesh, shell, VpsGround::Cuboid);
+    let prepared = vps(mesh, shell, None);
     let mut poses = Vec::new();
     for run in 0..10 {
         let mut world = PhysicsWorld {
@@ -202,38 +200,28 @@ fn ground(
         body: bunny,
         ground: Ground::Cuboid(GROUND),
     };
-    let dense = || VpsGround::Voxelmap(ground_options(Density::Dense));
-    let sparse = || VpsGround::Voxelmap(ground_options(Density::Sparse));
     let decomposition = ConvexDecomposition {
         parts: 8,
         vertices: 100,
         resolution: 64,
     };
     let algorithms = [
-        (
-            "fine_cuboid",
-            "VPS 35 596, cuboid",
-            vps(bunny, fine, VpsGround::Cuboid),
-        ),
+        ("fine_cuboid", "VPS 35 596, cuboid", vps(bunny, fine, None)),
         (
             "fine_dense",
             "VPS 35 596, dense voxelmap",
-            vps(bunny, fine, dense()),
+            vps(bunny, fine, Some(Density::Dense)),
         ),
         (
             "fine_sparse",
             "VPS 35 596, sparse voxelmap",
-            vps(bunny, fine, sparse()),
+            vps(bunny, fine, Some(Density::Sparse)),
         ),
-        (
-            "coarse_cuboid",
-            "VPS 799, cuboid",
-            vps(bunny, coarse, VpsGround::Cuboid),
-        ),
+        ("coarse_cuboid", "VPS 799, cuboid", vps(bunny, coarse, None)),
         (
             "coarse_dense",
             "VPS 799, dense voxelmap",
-            vps(bunny, coarse, dense()),
+            vps(bunny, coarse, Some(Density::Dense)),
         ),
         (
             "hull",
@@ -511,6 +499,18 @@ fn clusterings(table: &mut Table, bunny: &Mesh, poses: &[Pose]) {
     table.line("");
 }
 
+/// A shape against itself; nobody asks for its memory.
+fn in_itself(shape: SharedShape, dispatcher: Arc<Dispatcher>) -> Prepared {
+    Prepared {
+        memory: Memory::of_parry(&*shape),
+        body: shape.clone(),
+        ground: shape,
+        dispatcher,
+        size: Vec::new(),
+        ground_size: Vec::new(),
+    }
+}
+
 /// Two fine bunnies, one ear in the other.
 fn interlocked(
     criterion: &mut Criterion,
@@ -530,13 +530,7 @@ fn interlocked(
         .collect();
     table.line("## Bunny on bunny, interlocked, both fine\n");
     table.line("| algorithm | a query | triangle mesh on triangle mesh / this |\n|---|---|---|");
-    let prepared = Prepared {
-        body: shape.clone(),
-        ground: shape,
-        dispatcher: Arc::new(VpsDispatcher::default()),
-        size: Vec::new(),
-        ground_size: Vec::new(),
-    };
+    let prepared = in_itself(shape, Arc::new(VpsDispatcher::default()));
     let mut contacts = Contacts::default();
     let mut run = || {
         for pose in &poses {
@@ -548,13 +542,7 @@ fn interlocked(
     let cases = [Case::new("vps", poses.len(), &mut run)];
     let [own] = measure(criterion, "interlocked", cases);
     let theirs = {
-        let prepared = Prepared {
-            body: mesh.clone(),
-            ground: mesh,
-            dispatcher: Arc::new(DefaultQueryDispatcher),
-            size: Vec::new(),
-            ground_size: Vec::new(),
-        };
+        let prepared = in_itself(mesh, Arc::new(DefaultQueryDispatcher));
         // Seconds a query: criterion would take minutes.
         let few = &poses[..2];
         let start = Instant::now();

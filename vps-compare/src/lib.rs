@@ -5,13 +5,7 @@
 //! the query dispatcher of parry, so that the same pair can be put in a rapier world or queried
 //! directly.
 //!
-//! | adapter | what it does to the mesh |
-//! |---|---|
-//! | [`Vps`] | pointshell against a voxelmap or an exact cuboid |
-//! | [`ConvexHull`] | a hull of few support points (GJK and EPA) |
-//! | [`ConvexDecomposition`] | VHACD parts with few vertices each |
-//! | [`Trimesh`] | nothing |
-//! | [`Voxels`] | filled voxels, each a cube |
+//! [`Algorithm`] is the list of all algorithms, which the command and the experiments take from here.
 //!
 //! [`oracle`] computes exact penetrations.
 
@@ -26,10 +20,8 @@ mod precision;
 mod prepared;
 mod scene;
 
-pub use algorithm::{CollisionAlgorithm, PrepareError};
-pub use algorithms::{
-    AssetSource, ConvexDecomposition, ConvexHull, Trimesh, Voxels, Vps, VpsGround,
-};
+pub use algorithm::{AssetSource, CollisionAlgorithm, PrepareError, Sizes};
+pub use algorithms::*;
 pub use contacts::{Contacts, count_and_deepest};
 pub use memory::Memory;
 pub use prepared::{Dispatcher, Prepared, Size};

@@ -1,5 +1,4 @@
 use rapier3d::parry::shape::{Compound, ConvexPolyhedron, Shape};
-use vps_rapier::VpsShape;
 
 /// Memory of shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,16 +10,9 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// The memory of a shape. VPS shapes are exact; triangle meshes and voxels are counted by
-    /// parry, hulls and compounds by their accessible elements.
-    pub fn of(shape: &dyn Shape) -> Self {
-        if let Some(vps) = shape.as_shape::<VpsShape>() {
-            let asset = vps.asset();
-            return Self {
-                bytes: asset.voxelmap.store().byte_len() + asset.tree.byte_len(),
-                is_estimate: false,
-            };
-        }
+    /// The memory of a shape of parry. Triangle meshes and voxels are counted by parry, hulls and
+    /// compounds by their accessible elements; any other shape has the size of its type.
+    pub fn of_parry(shape: &dyn Shape) -> Self {
         let estimate = if let Some(mesh) = shape.as_trimesh() {
             Some(mesh.total_memory_size())
         } else if let Some(voxels) = shape.as_voxels() {
@@ -49,7 +41,7 @@ impl Memory {
 fn of_compound(compound: &Compound) -> usize {
     let parts = compound.shapes().iter();
     let parts: usize = parts
-        .map(|part| size_of_val(part) + Memory::of(&*part.1).bytes)
+        .map(|part| size_of_val(part) + Memory::of_parry(&*part.1).bytes)
         .sum();
     size_of_val(compound)
         + parts
@@ -77,7 +69,7 @@ mod tests {
 
     #[test]
     fn larger_shapes_take_more_memory() {
-        let cuboid = Memory::of(&*SharedShape::cuboid(1.0, 1.0, 1.0));
+        let cuboid = Memory::of_parry(&*SharedShape::cuboid(1.0, 1.0, 1.0));
         assert_eq!(
             (cuboid.bytes, cuboid.is_estimate),
             (size_of::<Vector>(), false)
@@ -86,10 +78,10 @@ mod tests {
             .map(|i| Vector::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32))
             .collect();
         let hull = SharedShape::convex_hull(&corners).unwrap();
-        let one = Memory::of(&*hull);
+        let one = Memory::of_parry(&*hull);
         assert!(one.is_estimate && one.bytes > 8 * size_of::<Vector>());
         let at = |x: f32| (rapier3d::math::Pose::translation(x, 0.0, 0.0), hull.clone());
-        let two = Memory::of(&*SharedShape::compound(vec![at(0.0), at(2.0)]));
+        let two = Memory::of_parry(&*SharedShape::compound(vec![at(0.0), at(2.0)]));
         assert!(two.is_estimate && two.bytes > 2 * one.bytes);
         assert_eq!(one.and(cuboid).bytes, one.bytes + cuboid.bytes);
     }

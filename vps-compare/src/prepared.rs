@@ -24,17 +24,14 @@ pub struct Prepared {
     pub size: Size,
     /// Size of the ground's shape if it was a mesh; empty if it is a box.
     pub ground_size: Size,
+    /// Memory of both shapes.
+    pub memory: Memory,
 }
 
 /// Numbers by name.
 pub type Size = Vec<(&'static str, usize)>;
 
 impl Prepared {
-    /// Memory of both shapes.
-    pub fn memory(&self) -> Memory {
-        Memory::of(&*self.body).and(Memory::of(&*self.ground))
-    }
-
     /// Updates the contacts for a pose of the body in the frame of the ground, up to a separation
     /// of `prediction` metres.
     ///

@@ -6,6 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 use vps_build::Mesh;
+use vps_compare::Algorithm;
 
 /// A folder of its own for a test, gone at its end.
 struct Folder(PathBuf);
@@ -84,18 +85,18 @@ fn vps_compare(arguments: &[&str]) -> (Option<i32>, String, String) {
 const SMALL: [&str; 8] = [
     "--points", "400", "--voxels", "20", "--repeat", "1", "--parts", "4",
 ];
-const ALGORITHMS: [&str; 6] = [
-    "vps",
-    "vps_both",
-    "convex_hull",
-    "convex_decomposition",
-    "trimesh",
-    "voxels",
-];
+
+/// The keys of the algorithms that are run if none is named, in the order of the table.
+fn default_set() -> Vec<&'static str> {
+    let all = Algorithm::all().into_iter();
+    let default_set = all.filter(|algorithm| algorithm.is_in_default_set());
+    default_set.map(|algorithm| algorithm.key()).collect()
+}
 
 #[test]
 fn random_poses_of_all_algorithms_agree_in_table_csv_and_json() {
     let folder = Folder::new("random");
+    let names = default_set();
     let [cup, ball] = folder.meshes();
     let csv_path = folder.path("rows.csv");
     let common = [&cup, &ball, "--random", "12", "--csv", &csv_path];
@@ -124,10 +125,11 @@ fn random_poses_of_all_algorithms_agree_in_table_csv_and_json() {
         .records()
         .map(|r| r.unwrap().iter().map(str::to_owned).collect())
         .collect();
-    assert_eq!(rows.len(), 12 * ALGORITHMS.len());
+    assert_eq!(rows.len(), 12 * names.len());
     let column = |name: &str| columns.iter().position(|c| c == name).unwrap();
     let algorithms = summary["algorithms"].as_array().unwrap();
-    for (algorithm, name) in algorithms.iter().zip(ALGORITHMS) {
+    assert_eq!(algorithms.len(), names.len());
+    for (algorithm, &name) in algorithms.iter().zip(&names) {
         assert_eq!(algorithm["algorithm"], name);
         assert_eq!(algorithm["status"], "ok");
         assert_eq!(algorithm["answered"], 12);
@@ -154,11 +156,14 @@ fn random_poses_of_all_algorithms_agree_in_table_csv_and_json() {
         assert_eq!(algorithm["missed"], missed);
         assert!(algorithm["prepare_s"].as_f64().unwrap() > 0.0);
         assert!(algorithm["memory_bytes"].as_u64().unwrap() > 0);
-        assert_eq!(algorithm["memory_is_estimate"], !name.starts_with("vps"));
+        if name.starts_with("vps") {
+            assert_eq!(algorithm["memory_is_estimate"], false);
+        }
     }
     // Both shells agree with the triangles to within a voxel; the hull of a cup is not a cup.
-    let error = |i: usize| algorithms[i]["error_max_m"].as_f64().unwrap();
-    assert!(error(1) < 0.1, "{}", error(1));
+    let both = names.iter().position(|name| *name == "vps_both").unwrap();
+    let error = algorithms[both]["error_max_m"].as_f64().unwrap();
+    assert!(error < 0.1, "{error}");
 
     let (code, table, errors) = vps_compare(&[&common[..], &SMALL].concat());
     assert_eq!((code, errors.as_str()), (Some(0), ""));
@@ -173,7 +178,7 @@ fn random_poses_of_all_algorithms_agree_in_table_csv_and_json() {
     ] {
         assert!(header.contains(column), "{header}");
     }
-    for name in ALGORITHMS {
+    for &name in &names {
         let is_row = |l: &&str| l.split_whitespace().next() == Some(name);
         assert_eq!(table.lines().filter(is_row).count(), 1, "{table}");
     }
@@ -216,6 +221,61 @@ fn poses_of_a_file_and_one_algorithm() {
     for (found, expected) in exact.into_iter().zip([-0.5, 0.02, -0.01]) {
         // A ball of faces is a little smaller than a ball.
         assert!((found - expected).abs() < 0.005, "{found}, {expected}");
+    }
+}
+
+#[test]
+fn help_names_all_algorithms_with_their_options() {
+    let (code, help, _) = vps_compare(&["--help"]);
+    assert_eq!(code, Some(0));
+    // Lines are wrapped.
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    for algorithm in Algorithm::all() {
+        let line = format!("- {}: {}", algorithm.key(), algorithm.about());
+        assert!(help.contains(&line), "{line}");
+    }
+    assert!(help.contains("VHACD [parts=8, vertices=100, resolution=64]"));
+    assert!(help.contains("around their origins; only if it is named"));
+}
+
+#[test]
+fn options_of_algorithms_are_set_and_those_that_do_not_exist_refused() {
+    let folder = Folder::new("set");
+    let ball = Mesh::icosphere(0.5, 3).unwrap();
+    let ball = folder.write("ball.obj", &obj(&ball));
+    let common = [&ball, &ball, "--random", "2", "--json"];
+    let sizes = |arguments: &[&str]| -> Vec<Value> {
+        let (code, json, errors) = vps_compare(&[&common[..], arguments].concat());
+        assert_eq!((code, errors.as_str()), (Some(0), ""));
+        let summary: Value = serde_json::from_str(&json).unwrap();
+        let algorithms = summary["algorithms"].as_array().unwrap();
+        algorithms.iter().map(|a| a["size_b"].clone()).collect()
+    };
+    let voxels = ["--algorithm", "voxels", "--voxels", "10"];
+    let ten = sizes(&voxels);
+    assert_eq!(
+        sizes(&["--algorithm", "voxels", "--set", "voxels.resolution=10"]),
+        ten
+    );
+    let twenty = sizes(&[&voxels[..], &["--set", "voxels.resolution=20"]].concat());
+    assert!(twenty[0]["voxels"].as_u64() > ten[0]["voxels"].as_u64());
+    // An algorithm that is not in the default set, with nothing to count.
+    assert_eq!(
+        sizes(&["--algorithm", "ball"]),
+        [Value::Object(Default::default())]
+    );
+    for (setting, why) in [
+        ("voxels.parts=3", "unknown field `parts`"),
+        ("hull.parts=3", "no algorithm `hull`"),
+    ] {
+        let (code, _, message) = vps_compare(&[&common[..], &["--set", setting]].concat());
+        assert_eq!(code, Some(2));
+        assert_eq!(message.lines().count(), 1, "{message}");
+        let start = format!("vps-compare: --set {setting}: ");
+        assert!(
+            message.starts_with(&start) && message.contains(why),
+            "{message}"
+        );
     }
 }
 

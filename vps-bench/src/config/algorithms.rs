@@ -1,10 +1,12 @@
-//! The algorithms of `algorithms.toml`, which experiments refer to by name.
+//! The algorithms that experiments refer to by name: those of `algorithms.toml` and, by their keys,
+//! those of vps-compare with their default options.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use plotters::style::RGBColor;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
+use vps_compare::Algorithm as Method;
 
 use crate::config::toml_file::{ConfigError, read_toml};
 
@@ -15,13 +17,13 @@ pub(crate) struct Algorithms {
     list: BTreeMap<String, Algorithm>,
 }
 
-/// A collision algorithm with its parameters.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+/// A collision algorithm as experiments show it.
+#[derive(Clone, Debug)]
 pub(crate) struct Algorithm {
     /// Its name in tables and figures.
     pub(crate) label: String,
-    /// Its colour in all figures, such as `#0072b2`.
-    pub(crate) color: String,
+    /// Its colour in all figures.
+    color: RGBColor,
     pub(crate) method: Method,
 }
 
@@ -29,8 +31,10 @@ pub(crate) struct Algorithm {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
-    label: String,
-    color: String,
+    /// That of the method, if there is none.
+    label: Option<String>,
+    /// A colour such as `#0072b2`; that of the method, if there is none.
+    color: Option<String>,
     method: Option<Method>,
     /// An algorithm of the method `vps` that differs from this one only in its manifolds.
     like: Option<String>,
@@ -38,95 +42,55 @@ struct Entry {
     segments: Option<u32>,
 }
 
-/// The method of an algorithm, with its parameters.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub(crate) enum Method {
-    Vps(Vps),
-    /// The native ball of the engine, for the mesh of a ball around its origin.
-    Ball,
-    ConvexHull,
-    ConvexDecomposition {
-        parts: usize,
-        vertices: usize,
-        resolution: u32,
-    },
-    Trimesh,
-    Voxels {
-        resolution: u32,
-    },
-}
-
-/// Parameters of Voxelmap-Pointshell.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Vps {
-    pub(crate) points: u32,
-    pub(crate) branching: u32,
-    pub(crate) voxel_size_m: f64,
-    pub(crate) margin: u32,
-    pub(crate) sampling: SamplingName,
-    /// The level whose clusters give a contact each (section 2.4); without it there are four
-    /// contacts that span the largest area.
-    pub(crate) segments: Option<u32>,
-    /// Voxels of the ground; without them the ground is an exact cuboid.
-    pub(crate) ground_voxel_size_m: Option<f64>,
-    pub(crate) ground_margin: Option<u32>,
-}
-
-/// How a voxelmap is sampled.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum SamplingName {
-    Trilinear,
-    Local,
-}
-
 impl Algorithm {
-    /// Its colour, which was checked when it was read.
+    /// An algorithm with the label and the colour of its method.
+    fn of(method: Method) -> Self {
+        let [red, green, blue] = method.color();
+        Self {
+            label: method.label().into(),
+            color: RGBColor(red, green, blue),
+            method,
+        }
+    }
+
+    /// Its colour in all figures.
     pub(crate) fn rgb(&self) -> RGBColor {
-        let digits = self.color.trim_start_matches('#');
-        let [_, r, g, b] = u32::from_str_radix(digits, 16).unwrap_or(0).to_be_bytes();
-        RGBColor(r, g, b)
+        self.color
     }
 }
 
 impl Algorithms {
-    /// Reads the list.
+    /// Reads the list. Its names hide the keys of vps-compare.
     pub(crate) fn read(path: &Path) -> Result<Self, ConfigError> {
         let entries: BTreeMap<String, Entry> = read_toml(path)?;
-        let resolve = |(name, entry): (&String, &Entry)| {
-            let method = entry.resolve(&entries);
-            let method = method.map_err(|message| ConfigError::Value {
+        let by_key = |method: Method| (method.key().to_owned(), Algorithm::of(method));
+        let mut list: BTreeMap<_, _> = Method::all().into_iter().map(by_key).collect();
+        for (name, entry) in &entries {
+            let algorithm = entry.resolve(&entries);
+            let algorithm = algorithm.map_err(|message| ConfigError::Value {
                 path: path.into(),
                 message: format!("[{name}]: {message}"),
             })?;
-            let algorithm = Algorithm {
-                label: entry.label.clone(),
-                color: entry.color.clone(),
-                method,
-            };
-            Ok((name.clone(), algorithm))
-        };
+            list.insert(name.clone(), algorithm);
+        }
         Ok(Self {
             path: path.into(),
-            list: entries.iter().map(resolve).collect::<Result<_, _>>()?,
+            list,
         })
     }
 
     /// The algorithm of a name.
     pub(crate) fn get(&self, name: &str) -> Result<&Algorithm, String> {
         let known = self.list.get(name);
-        known.ok_or_else(|| format!("no algorithm `{name}` in {}", self.path.display()))
+        known.ok_or_else(|| {
+            let (path, keys) = (self.path.display(), Method::KEYS.join(", "));
+            format!("no algorithm `{name}` in {path}, and it is none of {keys}")
+        })
     }
 }
 
 impl Entry {
-    fn resolve(&self, all: &BTreeMap<String, Self>) -> Result<Method, String> {
-        let color = self.color.strip_prefix('#').filter(|c| c.len() == 6);
-        if color.is_none_or(|c| u32::from_str_radix(c, 16).is_err()) {
-            return Err(format!("color must be like #0072b2, not {}", self.color));
-        }
+    fn resolve(&self, all: &BTreeMap<String, Self>) -> Result<Algorithm, String> {
         let mut method = match (&self.method, &self.like) {
             (Some(method), None) => method.clone(),
             (None, Some(like)) => {
@@ -135,16 +99,29 @@ impl Entry {
             }
             _ => return Err("either method or like is needed".into()),
         };
-        match (&mut method, self.segments) {
-            (_, None) => {}
-            (Method::Vps(vps), Some(level)) if level > 0 => vps.segments = Some(level),
-            _ => return Err("segments is a level from 1 on, of the method vps".into()),
+        if self.segments.is_some() {
+            let Method::Vps(vps) = &mut method else {
+                return Err("segments are of the method vps".into());
+            };
+            vps.segments = self.segments;
+            method.check()?;
         }
-        if let Method::ConvexDecomposition { vertices, .. } = method
-            && vertices < 42
-        {
-            return Err("convex_decomposition.vertices must be at least 42".into());
+        let mut algorithm = Algorithm::of(method);
+        if let Some(label) = &self.label {
+            algorithm.label.clone_from(label);
         }
-        Ok(method)
+        if let Some(color) = &self.color {
+            let rgb = rgb(color);
+            algorithm.color =
+                rgb.ok_or_else(|| format!("color must be like #0072b2, not {color}"))?;
+        }
+        Ok(algorithm)
     }
+}
+
+/// A colour such as `#0072b2`.
+fn rgb(color: &str) -> Option<RGBColor> {
+    let digits = color.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+    let [_, red, green, blue] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some(RGBColor(red, green, blue))
 }

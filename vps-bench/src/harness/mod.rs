@@ -9,7 +9,6 @@ pub(crate) mod job;
 pub(crate) mod lock;
 mod model_source;
 pub(crate) mod model_store;
-mod native_ball;
 pub(crate) mod prepare;
 pub(crate) mod run;
 pub(crate) mod scratch;

@@ -4,15 +4,8 @@ use std::cell::RefCell;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use vps_build::{AssetCache, BuildOptions, CachedAsset, Mesh, PointCount, Resolution};
-use vps_compare::{
-    AssetSource, CollisionAlgorithm, ConvexDecomposition, ConvexHull, Prepared, Scene, Trimesh,
-    Voxels, Vps, VpsGround,
-};
-use vps_rapier::{Manifolds, Sampling};
-
-use crate::config::algorithms::{self, Method, SamplingName};
-use crate::harness::native_ball::NativeBall;
+use vps_build::{AssetCache, BuildOptions, CachedAsset, Mesh};
+use vps_compare::{Algorithm, Prepared, Scene};
 
 /// An algorithm prepared for a body and a ground.
 pub(crate) struct PreparedAlgorithm {
@@ -46,7 +39,7 @@ pub(crate) struct Preparation {
 
 /// Prepares a scene and takes the time.
 pub(super) fn prepare(
-    method: &Method,
+    method: &Algorithm,
     scene: &Scene<'_>,
     assets: &AssetCache,
 ) -> PreparedAlgorithm {
@@ -60,23 +53,7 @@ pub(super) fn prepare(
         Ok(asset)
     };
     let start = Instant::now();
-    let result = match method {
-        Method::Vps(settings) => vps(settings, &get).prepare(scene),
-        Method::Ball => NativeBall.prepare(scene),
-        Method::ConvexHull => ConvexHull.prepare(scene),
-        &Method::ConvexDecomposition {
-            parts,
-            vertices,
-            resolution,
-        } => ConvexDecomposition {
-            parts,
-            vertices,
-            resolution,
-        }
-        .prepare(scene),
-        Method::Trimesh => Trimesh.prepare(scene),
-        &Method::Voxels { resolution } => Voxels { resolution }.prepare(scene),
-    };
+    let result = method.prepare_with(scene, &get);
     let prepare_s = start.elapsed().as_secs_f64();
     let prepared = result.map_err(|e| e.to_string());
     let size = prepared
@@ -92,7 +69,7 @@ pub(super) fn prepare(
         size: joined(size.map(|(what, n)| format!("{n} {what}"))),
         assets: joined(used.iter().map(|cached| cached.key.clone())),
         asset_bytes: used.iter().map(|cached| cached.file_bytes).sum(),
-        memory_bytes: prepared.as_ref().map_or(0, |p| p.memory().bytes as u64),
+        memory_bytes: prepared.as_ref().map_or(0, |p| p.memory.bytes as u64),
     };
     PreparedAlgorithm {
         prepared,
@@ -102,40 +79,4 @@ pub(super) fn prepare(
 
 fn joined(parts: impl Iterator<Item = String>) -> String {
     parts.collect::<Vec<_>>().join(", ")
-}
-
-/// Build options of the body's asset of a VPS algorithm.
-pub(crate) fn body_options(settings: &algorithms::Vps) -> BuildOptions {
-    BuildOptions {
-        resolution: Resolution::VoxelSize(settings.voxel_size_m),
-        margin: settings.margin,
-        points: PointCount::About(settings.points),
-        branching: settings.branching,
-        ..BuildOptions::default()
-    }
-}
-
-fn vps<'a>(settings: &algorithms::Vps, assets: &'a AssetSource<'a>) -> Vps<'a> {
-    let ground = match settings.ground_voxel_size_m {
-        Some(size) => VpsGround::Voxelmap(BuildOptions {
-            resolution: Resolution::VoxelSize(size),
-            margin: settings.ground_margin.unwrap_or(4),
-            // The ground is never the shell.
-            points: PointCount::About(100),
-            ..BuildOptions::default()
-        }),
-        None => VpsGround::Cuboid,
-    };
-    Vps {
-        body: body_options(settings),
-        ground,
-        sampling: match settings.sampling {
-            SamplingName::Trilinear => Sampling::Trilinear,
-            SamplingName::Local => Sampling::Local,
-        },
-        manifolds: settings
-            .segments
-            .map_or(Manifolds::Reduced, Manifolds::Segments),
-        assets,
-    }
 }

@@ -1,9 +1,10 @@
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::shape::SharedShape;
 use rapier3d::parry::transformation::vhacd::{VHACD, VHACDParameters};
+use serde::{Deserialize, Serialize};
 use vps_build::Mesh;
 
-use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithm::{AssetSource, CollisionAlgorithm, PrepareError, Sizes};
 use crate::algorithms::parry_pair::parry_pair;
 use crate::algorithms::simplify_hull::simplify_hull;
 use crate::precision::single;
@@ -16,7 +17,8 @@ use crate::scene::Scene;
 /// parry's VHACD splits, but does not merge as the original does, and returns more parts than
 /// requested. They are merged here, those with the least added volume first, until there are few
 /// enough.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ConvexDecomposition {
     /// Largest number of parts.
     pub parts: usize,
@@ -26,8 +28,46 @@ pub struct ConvexDecomposition {
     pub resolution: u32,
 }
 
+impl Default for ConvexDecomposition {
+    /// Eight parts of up to 100 vertices, found among 64 voxels along the longest side.
+    fn default() -> Self {
+        Self {
+            parts: 8,
+            vertices: 100,
+            resolution: 64,
+        }
+    }
+}
+
 impl CollisionAlgorithm for ConvexDecomposition {
-    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
+    fn about(&self) -> &'static str {
+        "Convex parts for each mesh, by VHACD"
+    }
+
+    fn label(&self) -> &'static str {
+        "convex decomposition"
+    }
+
+    fn color(&self) -> [u8; 3] {
+        [0xcc, 0x79, 0xa7]
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.vertices < 42 {
+            return Err("vertices must be at least 42".into());
+        }
+        Ok(())
+    }
+
+    fn set_sizes(&mut self, sizes: &Sizes) {
+        self.parts = sizes.parts;
+    }
+
+    fn prepare_with(
+        &self,
+        scene: &Scene<'_>,
+        _assets: &AssetSource<'_>,
+    ) -> Result<Prepared, PrepareError> {
         parry_pair(scene, |mesh| self.parts_of(mesh))
     }
 }

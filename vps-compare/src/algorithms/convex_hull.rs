@@ -1,8 +1,9 @@
 use rapier3d::math::Vector;
 use rapier3d::parry::shape::SharedShape;
+use serde::{Deserialize, Serialize};
 use vps_build::Mesh;
 
-use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithm::{AssetSource, CollisionAlgorithm, PrepareError};
 use crate::algorithms::parry_pair::parry_pair;
 use crate::precision::single;
 use crate::prepared::Prepared;
@@ -10,11 +11,27 @@ use crate::scene::Scene;
 
 /// One convex hull of the mesh's support points along 42 directions, those of an icosahedron
 /// divided once: the hull `btShapeHull` makes in the paper's comparison.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub struct ConvexHull;
 
 impl CollisionAlgorithm for ConvexHull {
-    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
+    fn about(&self) -> &'static str {
+        "A convex hull of up to 42 vertices for each mesh"
+    }
+
+    fn label(&self) -> &'static str {
+        "convex hull"
+    }
+
+    fn color(&self) -> [u8; 3] {
+        [0x00, 0x9e, 0x73]
+    }
+
+    fn prepare_with(
+        &self,
+        scene: &Scene<'_>,
+        _assets: &AssetSource<'_>,
+    ) -> Result<Prepared, PrepareError> {
         parry_pair(scene, |mesh| {
             let points = support_points(&single(mesh.vertices()));
             let no_volume = PrepareError::NoVolume("convex hull");

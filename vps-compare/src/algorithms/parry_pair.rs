@@ -7,6 +7,7 @@ use rapier3d::parry::shape::SharedShape;
 use vps_build::Mesh;
 
 use crate::algorithm::PrepareError;
+use crate::memory::Memory;
 use crate::prepared::{Prepared, Size};
 use crate::scene::{Ground, Scene};
 
@@ -21,6 +22,7 @@ pub(super) fn parry_pair(
         Ground::Mesh(mesh) => make(mesh)?,
     };
     Ok(Prepared {
+        memory: Memory::of_parry(&*body).and(Memory::of_parry(&*ground)),
         body,
         ground,
         dispatcher: Arc::new(DefaultQueryDispatcher),

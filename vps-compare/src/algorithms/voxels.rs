@@ -1,9 +1,10 @@
 use rapier3d::math::Vector;
 use rapier3d::parry::shape::{SharedShape, Voxels as ParryVoxels};
 use rapier3d::parry::transformation::voxelization::{FillMode, VoxelSet};
+use serde::{Deserialize, Serialize};
 use vps_build::Mesh;
 
-use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithm::{AssetSource, CollisionAlgorithm, PrepareError, Sizes};
 use crate::algorithms::parry_pair::parry_pair;
 use crate::precision::single;
 use crate::prepared::{Prepared, Size};
@@ -14,14 +15,42 @@ use crate::scene::Scene;
 /// Every voxel that a triangle passes through is a whole cube, so that a corner of a body can be up
 /// to the diagonal of a voxel outside of its mesh. Between two such bodies parry can report
 /// contacts away from the cubes of either, and so false touches.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Voxels {
     /// Voxels along the longest side of a mesh, at least 1.
     pub resolution: u32,
 }
 
+impl Default for Voxels {
+    /// 100 voxels along the longest side.
+    fn default() -> Self {
+        Self { resolution: 100 }
+    }
+}
+
 impl CollisionAlgorithm for Voxels {
-    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
+    fn about(&self) -> &'static str {
+        "Filled voxels, as parry has them"
+    }
+
+    fn label(&self) -> &'static str {
+        "voxels of parry"
+    }
+
+    fn color(&self) -> [u8; 3] {
+        [0xe6, 0x9f, 0x00]
+    }
+
+    fn set_sizes(&mut self, sizes: &Sizes) {
+        self.resolution = sizes.voxels;
+    }
+
+    fn prepare_with(
+        &self,
+        scene: &Scene<'_>,
+        _assets: &AssetSource<'_>,
+    ) -> Result<Prepared, PrepareError> {
         parry_pair(scene, |mesh| self.voxels_of(mesh))
     }
 }

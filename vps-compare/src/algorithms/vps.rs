@@ -1,89 +1,198 @@
 use std::sync::Arc;
 
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use vps_build::{BuildOptions, Mesh};
+use rapier3d::parry::shape::SharedShape;
+use serde::{Deserialize, Serialize};
+use vps_build::{BuildOptions, Mesh, PointCount, Resolution};
 use vps_core::Asset;
 use vps_rapier::{Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
 
-use crate::algorithm::{CollisionAlgorithm, PrepareError};
+use crate::algorithm::{AssetSource, CollisionAlgorithm, PrepareError, Sizes};
 use crate::algorithms::parry_pair::cuboid;
+use crate::memory::Memory;
 use crate::prepared::{Prepared, Size};
 use crate::scene::{Ground, Scene};
 
 /// Voxelmap-Pointshell: the pointshell of one body in the field of the other.
-pub struct Vps<'s> {
-    /// Build options of the body's asset.
-    pub body: BuildOptions,
-    /// The kind of ground.
-    pub ground: VpsGround,
+///
+/// A mesh as the ground is treated as the body is: of the two pointshells, the one whose points are
+/// closer together is in the voxelmap of the other, and the other way round if the other is thin.
+/// On a box the body is the shell.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Vps {
+    /// Number of points, to within 2 %.
+    pub points: u32,
+    /// Children of a cluster K.
+    pub branching: u32,
+    /// Length of a voxel's edge in metres.
+    pub voxel_size_m: Option<f64>,
+    /// Outer layers of voxels around the box of a mesh.
+    pub margin: u32,
     /// How a voxelmap is sampled.
+    #[serde(with = "SamplingName")]
     pub sampling: Sampling,
-    /// Which contacts an engine gets.
-    pub manifolds: Manifolds,
-    /// The source of assets.
-    pub assets: &'s AssetSource<'s>,
+    /// The level whose clusters give a contact each (section 2.4), 1 at the top. Without it there
+    /// are four contacts that span the largest area.
+    pub segments: Option<u32>,
+    /// Length of the edge of a box's voxels in metres. Without it a box is an exact cuboid.
+    pub ground_voxel_size_m: Option<f64>,
+    /// Outer layers of voxels around a box; 4 without it.
+    pub ground_margin: Option<u32>,
+    /// Voxels along the longest side of a mesh, if there is no [`Self::voxel_size_m`]. Without
+    /// either the builder chooses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub voxels: Option<u32>,
 }
 
-/// Builds an asset, or returns a cached one; an error is one line of text.
-pub type AssetSource<'s> = dyn Fn(&Mesh, &BuildOptions) -> Result<Arc<Asset<'static>>, String> + 's;
-
-/// The ground of [`Vps`].
-#[derive(Clone, Debug, PartialEq)]
-pub enum VpsGround {
-    /// A voxelmap, as in the paper; the body is the shell.
-    Voxelmap(BuildOptions),
-    /// An asset with a role like the body: with [`Role::Mixed`] the one with closer points is the
-    /// shell, with [`Role::Both`] either is.
-    Asset(BuildOptions, Role),
-    /// The box itself.
-    Cuboid,
+/// Names of samplings in files.
+#[derive(Deserialize, Serialize)]
+#[serde(remote = "Sampling", rename_all = "snake_case")]
+enum SamplingName {
+    Trilinear,
+    Local,
 }
 
-impl CollisionAlgorithm for Vps<'_> {
-    fn prepare(&self, scene: &Scene<'_>) -> Result<Prepared, PrepareError> {
-        let asset =
-            |mesh: &Mesh, options| (self.assets)(mesh, options).map_err(PrepareError::Asset);
-        let body = asset(scene.body, &self.body)?;
-        let ground = match &self.ground {
-            VpsGround::Voxelmap(options) | VpsGround::Asset(options, _) => {
-                Some(match scene.ground {
-                    Ground::Cuboid(extents) => {
-                        let no_volume = |_| PrepareError::NoVolume("ground");
-                        asset(&Mesh::cuboid(extents).map_err(no_volume)?, options)?
-                    }
-                    Ground::Mesh(mesh) => asset(mesh, options)?,
-                })
+impl Default for Vps {
+    /// The defaults of the builder, with 10 000 points; a box is exact.
+    fn default() -> Self {
+        let options = BuildOptions::default();
+        Self {
+            points: 10_000,
+            branching: options.branching,
+            voxel_size_m: None,
+            margin: options.margin,
+            sampling: Sampling::default(),
+            segments: None,
+            ground_voxel_size_m: None,
+            ground_margin: None,
+            voxels: None,
+        }
+    }
+}
+
+impl CollisionAlgorithm for Vps {
+    fn about(&self) -> &'static str {
+        "The pointshell whose points are closer together in the voxelmap of the other, and the other \
+         way round if the other is thin"
+    }
+
+    fn label(&self) -> &'static str {
+        "VPS"
+    }
+
+    fn color(&self) -> [u8; 3] {
+        [0x00, 0x72, 0xb2]
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.segments == Some(0) {
+            return Err("segments is a level from 1 on".into());
+        }
+        Ok(())
+    }
+
+    fn set_sizes(&mut self, sizes: &Sizes) {
+        self.points = sizes.points;
+        self.voxels = Some(sizes.voxels);
+    }
+
+    fn prepare_with(
+        &self,
+        scene: &Scene<'_>,
+        assets: &AssetSource<'_>,
+    ) -> Result<Prepared, PrepareError> {
+        self.prepare_as(Role::Mixed, scene, assets)
+    }
+}
+
+impl Vps {
+    /// The build options of the asset of a mesh.
+    pub fn build_options(&self) -> BuildOptions {
+        let along_longest = self.voxels.map(Resolution::VoxelsAlongLongest);
+        let resolution = self.voxel_size_m.map(Resolution::VoxelSize);
+        BuildOptions {
+            resolution: resolution.or(along_longest).unwrap_or(Resolution::Auto),
+            margin: self.margin,
+            points: PointCount::About(self.points),
+            branching: self.branching,
+            ..BuildOptions::default()
+        }
+    }
+
+    /// The build options of a box that is a voxelmap.
+    fn box_options(&self) -> Option<BuildOptions> {
+        let default = BuildOptions::default();
+        self.ground_voxel_size_m.map(|size| BuildOptions {
+            resolution: Resolution::VoxelSize(size),
+            margin: self.ground_margin.unwrap_or(default.margin),
+            // A box is never the shell.
+            points: PointCount::About(100),
+            ..default
+        })
+    }
+
+    /// Prepares a scene with a role for both of two meshes.
+    pub(super) fn prepare_as(
+        &self,
+        role: Role,
+        scene: &Scene<'_>,
+        assets: &AssetSource<'_>,
+    ) -> Result<Prepared, PrepareError> {
+        let asset = |mesh: &Mesh, options: &BuildOptions| {
+            assets(mesh, options).map_err(PrepareError::Asset)
+        };
+        let body = asset(scene.body, &self.build_options())?;
+        let size = size_of_asset(&body);
+        let (body, ground, ground_size) = match scene.ground {
+            Ground::Mesh(mesh) => {
+                let ground = asset(mesh, &self.build_options())?;
+                let size = size_of_asset(&ground);
+                (shape(body, role), shape(ground, role), size)
             }
-            VpsGround::Cuboid => None,
-        };
-        let (body_role, ground_role) = match self.ground {
-            VpsGround::Asset(_, role) => (role, role),
-            _ => (Role::Pointshell, Role::Voxelmap),
-        };
-        let ground_size = match scene.ground {
-            Ground::Mesh(_) => ground.as_ref().map_or(Size::new(), size),
-            Ground::Cuboid(_) => Size::new(),
-        };
-        let ground = match (ground, scene.ground) {
-            (Some(asset), _) => VpsShape::new(asset).with_role(ground_role).into(),
-            (None, Ground::Cuboid(extents)) => cuboid(extents),
-            (None, Ground::Mesh(_)) => return Err(PrepareError::NotACuboid),
+            Ground::Cuboid(extents) => {
+                let ground = match self.box_options() {
+                    Some(options) => {
+                        let no_volume = |_| PrepareError::NoVolume("ground");
+                        let mesh = Mesh::cuboid(extents).map_err(no_volume)?;
+                        shape(asset(&mesh, &options)?, Role::Voxelmap)
+                    }
+                    None => {
+                        let cuboid = cuboid(extents);
+                        let memory = Memory::of_parry(&*cuboid);
+                        (cuboid, memory)
+                    }
+                };
+                (shape(body, Role::Pointshell), ground, Size::new())
+            }
         };
         let dispatcher = VpsDispatcher {
             sampling: self.sampling,
-            manifolds: self.manifolds,
+            manifolds: self
+                .segments
+                .map_or(Manifolds::Reduced, Manifolds::Segments),
         };
         Ok(Prepared {
-            size: size(&body),
-            body: VpsShape::new(body).with_role(body_role).into(),
-            ground,
+            body: body.0,
+            ground: ground.0,
             dispatcher: Arc::new(dispatcher.chain(DefaultQueryDispatcher)),
+            size,
             ground_size,
+            memory: body.1.and(ground.1),
         })
     }
 }
 
-fn size(asset: &Arc<Asset<'static>>) -> Size {
+/// The shape of an asset, and the memory of map and tree.
+fn shape(asset: Arc<Asset<'static>>, role: Role) -> (SharedShape, Memory) {
+    let memory = Memory {
+        bytes: asset.voxelmap.store().byte_len() + asset.tree.byte_len(),
+        is_estimate: false,
+    };
+    (VpsShape::new(asset).with_role(role).into(), memory)
+}
+
+fn size_of_asset(asset: &Asset<'_>) -> Size {
     vec![
         ("points", asset.tree.point_count()),
         ("levels", asset.tree.level_count() as usize),

@@ -1,10 +1,11 @@
-use std::fmt;
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Parser, ValueEnum};
 use vps_build::Sign;
+use vps_compare::{Algorithm, Sizes};
 
-use super::Error;
+use super::{Error, options};
 
 /// Compares collision algorithms on two meshes: how fast, how large, how wrong.
 ///
@@ -48,16 +49,19 @@ pub(crate) struct Args {
     #[arg(long, value_name = "METRES")]
     pub(super) tolerance: Option<f64>,
     /// Only this algorithm; may be given several times
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub(super) algorithm: Vec<Name>,
+    #[arg(long, value_parser = algorithm_names(), value_name = "NAME")]
+    pub(super) algorithm: Vec<String>,
+    /// An option of an algorithm, as listed above; may be given several times
+    #[arg(long, value_name = "NAME.OPTION=VALUE")]
+    pub(super) set: Vec<String>,
     /// Points of each pointshell of VPS, to within 2 %
-    #[arg(long, default_value_t = 10_000)]
+    #[arg(long, default_value_t = SIZES.points)]
     pub(super) points: u32,
     /// Voxels along the longest side of a mesh, of VPS and of parry's voxels
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = SIZES.voxels)]
     pub(super) voxels: u32,
     /// Most parts of a convex decomposition, of up to 100 vertices each
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = SIZES.parts)]
     pub(super) parts: usize,
     /// Which side of a face is the inside
     #[arg(long, value_enum, default_value_t = SignName::Auto)]
@@ -80,8 +84,19 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(super) json: bool,
     /// The algorithm to work for, in a process that this command has started
-    #[arg(long, hide = true, value_enum, value_name = "NAME")]
-    pub(super) worker: Option<Name>,
+    #[arg(long, hide = true, value_parser = algorithm_names(), value_name = "NAME")]
+    pub(super) worker: Option<String>,
+}
+
+/// Sizes of the algorithms unless others are given.
+const SIZES: Sizes = Sizes {
+    points: 10_000,
+    voxels: 100,
+    parts: 8,
+};
+
+fn algorithm_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(options::help(&SIZES))
 }
 
 /// Classification of inside and outside, as in `vps-build build`.
@@ -108,38 +123,15 @@ impl From<SignName> for Sign {
     }
 }
 
-/// An algorithm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub(super) enum Name {
-    /// The pointshell whose points are closer to each other in the voxelmap of the other, and the other
-    /// way round if the other is thin
-    Vps,
-    /// Each pointshell in the voxelmap of the other
-    VpsBoth,
-    /// A convex hull of up to 42 vertices for each mesh
-    ConvexHull,
-    /// Convex parts for each mesh, by VHACD
-    ConvexDecomposition,
-    /// The triangles
-    Trimesh,
-    /// Filled voxels, as parry has them
-    Voxels,
-}
-
-impl fmt::Display for Name {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // None is left out of the list of values.
-        let value = self.to_possible_value();
-        f.write_str(value.as_ref().map_or("", |value| value.get_name()))
-    }
-}
-
 impl Args {
-    /// Those asked for, each once, in the order of the table.
-    pub(super) fn algorithms(&self) -> impl Iterator<Item = Name> {
-        let all = Name::value_variants().iter().copied();
-        all.filter(|name| self.algorithm.is_empty() || self.algorithm.contains(name))
+    /// The algorithms asked for, with their options.
+    pub(super) fn algorithms(&self) -> Result<Vec<Algorithm>, Error> {
+        let sizes = Sizes {
+            points: self.points,
+            voxels: self.voxels,
+            parts: self.parts,
+        };
+        Ok(options::algorithms(&self.algorithm, &sizes, &self.set)?)
     }
 
     pub(super) fn check(&self) -> Result<(), Error> {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 
 use super::Error;
-use super::args::{Args, Name};
+use super::args::Args;
 use super::worker::{PreparedInfo, QueryRequest, QueryResult, Ready};
 
 /// Interval of checks of a working process.
@@ -16,7 +16,7 @@ const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// An algorithm, prepared or failed.
 pub(super) struct Candidate {
-    pub(super) name: Name,
+    pub(super) name: &'static str,
     pub(super) prepare_s: f64,
     pub(super) made: Result<PreparedInfo, String>,
     worker: WorkerProcess,
@@ -24,7 +24,7 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// Prepares an algorithm, which uses a part of its budget.
-    pub(super) fn prepare(name: Name, args: &Args) -> Result<Self, Error> {
+    pub(super) fn prepare(name: &'static str, args: &Args) -> Result<Self, Error> {
         let mut worker = WorkerProcess::start(name, args)?;
         let made: Result<PreparedInfo, String> = worker.receive().and_then(|Ready| {
             // Reading the meshes is not counted.
@@ -61,7 +61,7 @@ struct WorkerProcess {
 }
 
 impl WorkerProcess {
-    fn start(name: Name, args: &Args) -> Result<Self, Error> {
+    fn start(name: &str, args: &Args) -> Result<Self, Error> {
         let mut child = Command::new(std::env::current_exe()?)
             .arg(format!("--worker={name}"))
             .args(std::env::args_os().skip(1))

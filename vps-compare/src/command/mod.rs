@@ -5,6 +5,7 @@ mod candidate;
 mod catch_panic;
 mod comparison;
 mod measure;
+mod options;
 mod poses;
 mod prepare;
 mod problem;
@@ -19,20 +20,22 @@ use comparison::Comparison;
 use measure::measure;
 use problem::Problem;
 use progress::Progress;
+use vps_compare::Algorithm;
 
 /// The error that ends the command: one line for people.
 type Error = Box<dyn std::error::Error>;
 
 pub(crate) fn run(args: &Args) -> Result<(), Error> {
-    if let Some(name) = args.worker {
+    if let Some(name) = &args.worker {
         return worker::work(name, args);
     }
     args.check()?;
+    let algorithms = args.algorithms()?;
     let progress = Progress::new()?;
     progress.set("reading the meshes".into());
     let problem = Problem::of(args, &progress)?;
     let mut candidates = Vec::new();
-    for name in args.algorithms() {
+    for name in algorithms.iter().map(Algorithm::key) {
         progress.set(format!("preparing {name}"));
         candidates.push(Candidate::prepare(name, args)?);
     }

@@ -9,7 +9,7 @@ use rapier3d::math::{Pose, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 use vps_compare::{Contacts, Prepared};
 
-use super::args::{Args, Name};
+use super::args::Args;
 use super::catch_panic::catch_panic;
 use super::{Error, prepare, problem};
 
@@ -49,12 +49,15 @@ pub(super) struct QueryResult {
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Answers requests until there are no more.
-pub(super) fn work(name: Name, args: &Args) -> Result<(), Error> {
+pub(super) fn work(name: &str, args: &Args) -> Result<(), Error> {
     let requests = requests();
+    let mut algorithms = args.algorithms()?.into_iter();
+    let algorithm = algorithms.find(|algorithm| algorithm.key() == name);
+    let algorithm = algorithm.ok_or_else(|| format!("`{name}` takes no part"))?;
     let (ground, body) = problem::meshes(args)?;
     send(&Ready)?;
     let start = Instant::now();
-    let prepared = catch_panic(|| prepare::prepare(name, args, [&ground, &body]));
+    let prepared = catch_panic(|| prepare::prepare(&algorithm, args, [&ground, &body]));
     let prepare_s = start.elapsed().as_secs_f64();
     send(&prepared.as_ref().map(|p| PreparedInfo::of(p, prepare_s)))?;
     let Ok(prepared) = prepared else {
@@ -120,7 +123,6 @@ fn query(prepared: &Prepared, request: &QueryRequest, repeat: u32) -> Result<Que
 
 impl PreparedInfo {
     fn of(prepared: &Prepared, prepare_s: f64) -> Self {
-        let memory = prepared.memory();
         let named = |size: &vps_compare::Size| {
             let size = size.iter();
             size.map(|(name, n)| ((*name).to_owned(), *n)).collect()
@@ -129,8 +131,8 @@ impl PreparedInfo {
             prepare_s,
             size_a: named(&prepared.ground_size),
             size_b: named(&prepared.size),
-            memory_bytes: memory.bytes,
-            memory_is_estimate: memory.is_estimate,
+            memory_bytes: prepared.memory.bytes,
+            memory_is_estimate: prepared.memory.is_estimate,
         }
     }
 }

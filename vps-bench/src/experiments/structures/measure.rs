@@ -11,7 +11,7 @@ use super::{Settings, VOXELMAPS, clustering, vps};
 use crate::experiments::experiment::Measurement;
 use crate::harness::context::Context;
 use crate::harness::job::Job;
-use crate::harness::prepare::{Preparation, body_options};
+use crate::harness::prepare::Preparation;
 
 /// An asset, or a level of its tree.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -51,7 +51,7 @@ pub(super) fn run(
     context: &Context,
 ) -> Result<Measurement, String> {
     let body = context.body(&settings.model, settings.scale)?;
-    let whole = body_options(vps(&context.algorithms, &job.algorithm)?);
+    let whole = vps(&context.algorithms, &job.algorithm)?.build_options();
     let map = VOXELMAPS.iter().find(|(case, _)| *case == job.case);
     let options = match (map, clustering(&job.case, job.seed)) {
         (Some((_, map)), _) => BuildOptions {

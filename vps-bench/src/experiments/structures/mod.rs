@@ -11,8 +11,9 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 use vps_build::{Clustering, Density, Encoding};
+use vps_compare::{Algorithm, Vps};
 
-use crate::config::algorithms::{Algorithms, Method, Vps};
+use crate::config::algorithms::Algorithms;
 use crate::config::validate::positive;
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -121,7 +122,7 @@ impl Settings {
 /// The settings of an algorithm that must be VPS.
 fn vps<'l>(algorithms: &'l Algorithms, name: &str) -> Result<&'l Vps, String> {
     match &algorithms.get(name)?.method {
-        Method::Vps(vps) => Ok(vps),
+        Algorithm::Vps(vps) => Ok(vps),
         _ => Err(format!("structures.shells: `{name}` has no pointshell")),
     }
 }

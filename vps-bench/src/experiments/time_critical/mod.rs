@@ -10,9 +10,10 @@ use std::time::Duration;
 
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
-use vps_rapier::VpsShape;
+use vps_compare::Algorithm;
+use vps_rapier::{Sampling, VpsShape};
 
-use crate::config::algorithms::{Algorithms, Method, SamplingName};
+use crate::config::algorithms::Algorithms;
 use crate::config::validate::{not_negative, positive};
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -171,7 +172,7 @@ impl Experiment for Settings {
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
-        let Method::Vps(method) = &context.algorithms.get(&job.algorithm)?.method else {
+        let Algorithm::Vps(method) = &context.algorithms.get(&job.algorithm)?.method else {
             return Err("only the method vps has a time-critical query".into());
         };
         let limit = self.limits().find(|limit| limit.case() == job.case);
@@ -188,8 +189,8 @@ impl Experiment for Settings {
         let (tree, map) = (&shape.asset().tree, &ground.asset().voxelmap);
         let center = body.mass.center();
         let row = match method.sampling {
-            SamplingName::Trilinear => measure(self, limit, tree, &map.trilinear(), center, &poses),
-            SamplingName::Local => measure(self, limit, tree, &map.local(), center, &poses),
+            Sampling::Trilinear => measure(self, limit, tree, &map.trilinear(), center, &poses),
+            Sampling::Local => measure(self, limit, tree, &map.local(), center, &poses),
         };
         Measurement::of(&[row?], &ready.preparation)
     }

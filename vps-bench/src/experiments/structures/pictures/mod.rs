@@ -22,7 +22,6 @@ use crate::figures::render::colors::Color;
 use crate::figures::render::figure_sheet::{Anchor, FigureSheet};
 use crate::figures::render::view::View;
 use crate::harness::context::{Body, Context};
-use crate::harness::prepare::body_options;
 
 /// A picture and its caption.
 pub(super) struct Picture {
@@ -112,7 +111,7 @@ impl<'s> Subject<'s> {
             cached(
                 context,
                 &body.mesh,
-                &body_options(vps(&context.algorithms, name)?),
+                &vps(&context.algorithms, name)?.build_options(),
             )
         };
         let (coarse, fine) = (
