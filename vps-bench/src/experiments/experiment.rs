@@ -5,7 +5,6 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 use serde::Serialize;
 
-use crate::config::algorithms::Algorithms;
 use crate::data::tables::Tables;
 use crate::error::Error;
 use crate::harness::archive::Rows;
@@ -13,6 +12,7 @@ use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::harness::prepare::Preparation;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// The result of a job.
 pub(crate) struct Measurement {
@@ -47,21 +47,28 @@ pub(crate) trait Experiment {
     }
 
     /// Names of the algorithms in `algorithms.toml` that take part, in the order of tables.
-    fn algorithms(&self) -> Vec<&str>;
+    fn algorithms(&self) -> Vec<&str> {
+        Vec::new()
+    }
 
     /// All jobs in the order they are run: seed by seed, so that a slow minute of the machine
     /// affects all algorithms. `quick` asks for the least that shows that everything works.
     fn jobs(&self, quick: bool) -> Vec<Job>;
 
-    /// The settings a job depends on, as text, without those that only decide how many jobs there
-    /// are, or how they are presented.
-    fn settings(&self) -> Result<String, Error>;
+    /// Keys of the settings that no job depends on: they only decide how many jobs there are, or
+    /// how they are presented. A dot leads into a table, as in `fall.show`. All other settings
+    /// identify a job.
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &[]
+    }
 
     /// Inputs of the jobs beside the settings, such as the bytes of a model.
     ///
     /// # Errors
     /// When they cannot be had.
-    fn identity(&self, context: &Context) -> Result<String, String>;
+    fn identity(&self, _context: &Context) -> Result<String, String> {
+        Ok(String::new())
+    }
 
     /// Runs a job.
     ///
@@ -82,11 +89,6 @@ pub(crate) trait Experiment {
         Ok(())
     }
 
-    /// Tables, figures (written into `folder`) and text, from the small tables alone.
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error>;
+    /// Tables, figures and text of a page of the report, from the small tables alone.
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error>;
 }

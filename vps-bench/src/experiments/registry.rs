@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::config::toml_file::{ConfigError, read_toml};
+use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
     accuracy, bounce, drop, replay, scaling, stack, structures, time_critical,
@@ -62,6 +63,23 @@ registry!(
 );
 
 impl ExperimentFile {
+    /// The settings a job depends on, as JSON: those of the kind without its planning keys.
+    pub(crate) fn physics(&self) -> Result<String, Error> {
+        let (name, kind) = self.named_kind()?;
+        let mut file = serde_json::to_value(self)?;
+        let settings = &mut file[name];
+        for key in kind.planning_keys() {
+            let mut table = &mut *settings;
+            let mut last = *key;
+            while let Some((name, rest)) = last.split_once('.') {
+                (table, last) = (&mut table[name], rest);
+            }
+            let removed = table.as_object_mut().and_then(|table| table.remove(last));
+            removed.ok_or_else(|| format!("no setting `{key}`"))?;
+        }
+        Ok(settings.to_string())
+    }
+
     /// Reads an experiment and checks its values.
     pub(crate) fn read(path: &Path) -> Result<Self, ConfigError> {
         let file: Self = read_toml(path)?;
@@ -100,9 +118,15 @@ impl ExperimentFile {
 
     /// The settings of the experiment's kind.
     pub(crate) fn kind(&self) -> Result<&dyn Experiment, String> {
+        Ok(self.named_kind()?.1)
+    }
+
+    fn named_kind(&self) -> Result<(&'static str, &dyn Experiment), String> {
         let kinds = self.kinds();
         let names: Vec<_> = kinds.iter().map(|(name, _)| format!("[{name}]")).collect();
-        let mut present = kinds.into_iter().filter_map(|(_, kind)| kind);
+        let mut present = kinds
+            .into_iter()
+            .filter_map(|(name, kind)| Some((name, kind?)));
         match (present.next(), present.next()) {
             (Some(kind), None) => Ok(kind),
             _ => Err(format!(
@@ -110,5 +134,36 @@ impl ExperimentFile {
                 names.join(", ")
             )),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_physics_of_every_experiment_is_without_its_planning_keys() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../experiments");
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if ["models", "algorithms"].contains(&path.file_stem().unwrap().to_str().unwrap()) {
+                continue;
+            }
+            let mut file = ExperimentFile::read(&path).unwrap();
+            let physics = file.physics().unwrap();
+            for key in file.kind().unwrap().planning_keys() {
+                let last = key.rsplit('.').next().unwrap();
+                let is_there = physics.contains(&format!("\"{last}\":"));
+                assert!(!is_there || key.contains('.'), "{}: {key}", path.display());
+            }
+            file.title.push('!');
+            assert_eq!(file.physics().unwrap(), physics);
+            if file.set_model("another", None).is_ok() {
+                assert_ne!(file.physics().unwrap(), physics, "{}", path.display());
+            }
+            count += 1;
+        }
+        assert!(count > 10);
     }
 }

@@ -12,17 +12,37 @@ pub(crate) struct Job {
 }
 
 impl Job {
-    /// One job for each algorithm.
-    pub(crate) fn of_each<'a>(
-        algorithms: impl IntoIterator<Item = &'a String>,
-        case: String,
-        seed: u32,
-    ) -> impl Iterator<Item = Self> {
-        algorithms.into_iter().map(move |algorithm| Self {
-            case: case.clone(),
-            algorithm: algorithm.clone(),
+    pub(crate) fn new(case: impl Into<String>, algorithm: impl Into<String>, seed: u32) -> Self {
+        Self {
+            case: case.into(),
+            algorithm: algorithm.into(),
             seed,
-        })
+        }
+    }
+
+    /// Every algorithm in every case from every seed, seed by seed.
+    pub(crate) fn of_all(seeds: u32, cases: &[String], algorithms: &[String]) -> Vec<Self> {
+        let mut jobs = Vec::new();
+        for seed in 0..seeds {
+            for case in cases {
+                jobs.extend(algorithms.iter().map(|a| Self::new(case, a, seed)));
+            }
+        }
+        jobs
+    }
+
+    /// The one of `cases` whose name is the job's case.
+    ///
+    /// # Errors
+    /// If none has that name.
+    pub(crate) fn find_case<C, N: AsRef<str>>(
+        &self,
+        cases: impl IntoIterator<Item = C>,
+        name: impl Fn(&C) -> N,
+    ) -> Result<C, String> {
+        let mut cases = cases.into_iter();
+        let case = cases.find(|case| name(case).as_ref() == self.case);
+        case.ok_or_else(|| format!("no case `{}`", self.case))
     }
 
     /// The identifier of the job in its experiment.

@@ -55,11 +55,7 @@ pub(crate) fn run(
         .is_pinned
         .then(|| affinity::pin_to_core(selection.shard));
     let environment = Environment::of_now(core.flatten());
-    let identity = format!(
-        "{} {}",
-        experiment.identity(context)?,
-        experiment.settings()?
-    );
+    let identity = format!("{} {}", experiment.identity(context)?, file.physics()?);
     let raw = folder.join("raw");
     let _lock = FolderLock::of(&raw)?;
     let archive = Archive::new(raw);

@@ -5,6 +5,7 @@ pub(crate) mod comparison;
 pub(crate) mod document;
 mod html;
 mod markdown;
+pub(crate) mod page;
 pub(crate) mod results;
 pub(crate) mod splice;
 pub(crate) mod write;

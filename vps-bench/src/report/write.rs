@@ -8,6 +8,7 @@ use crate::config::algorithms::Algorithms;
 use crate::error::Error;
 use crate::experiments::registry::ExperimentFile;
 use crate::report::document::{Block, OtherReport, Section};
+use crate::report::page::Page;
 use crate::report::results::Results;
 use crate::report::{html, markdown};
 
@@ -87,7 +88,12 @@ fn section(
     folder: &Path,
 ) -> Result<Section, Error> {
     let experiment = results.made_with.experiment.kind()?;
-    let mut blocks = experiment.present(&results.tables, algorithms, folder)?;
+    let page = Page {
+        tables: &results.tables,
+        algorithms,
+        folder,
+    };
+    let mut blocks = experiment.present(&page)?;
     if !results.made_with.failures.is_empty() {
         let failures = results.made_with.failures.join("; ");
         blocks.push(Block::Text(format!("Failed: {failures}.")));

@@ -10,8 +10,6 @@ mod shape;
 mod shell;
 mod summary;
 
-use std::path::Path;
-
 use polars::prelude::DataFrame;
 use rand::{Rng, RngExt};
 use rapier3d::glamx::{DQuat, DVec3};
@@ -20,7 +18,6 @@ use vps_build::{Density, Encoding};
 use vps_core::{DistanceField, Voxelmap, Wrench};
 
 use self::shape::Shape;
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::positive;
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -29,6 +26,7 @@ use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::harness::prepare::Preparation;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// Shapes, voxelmaps and pointshells that are measured.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -177,39 +175,22 @@ impl Experiment for Settings {
         positive("accuracy.depth_m", self.depth_m)
     }
 
-    fn algorithms(&self) -> Vec<&str> {
-        Vec::new()
-    }
-
     fn jobs(&self, quick: bool) -> Vec<Job> {
         let mut jobs = Vec::new();
         for shape in &self.shapes[..if quick { 1 } else { self.shapes.len() }] {
             let methods = self.methods.iter().map(|method| method.name());
-            jobs.extend(methods.chain([SHELL]).map(|what| Job {
-                case: shape.name().into(),
-                algorithm: what.into(),
-                seed: 0,
-            }));
+            let measured = methods.chain([SHELL]);
+            jobs.extend(measured.map(|what| Job::new(shape.name(), what, 0)));
         }
         jobs
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        let of_jobs = Self {
-            shapes: Vec::new(),
-            methods: Vec::new(),
-            ..self.clone()
-        };
-        Ok(serde_json::to_string(&of_jobs)?)
-    }
-
-    fn identity(&self, _context: &Context) -> Result<String, String> {
-        Ok(String::new())
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &["shapes", "methods"]
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
-        let shape = self.shapes.iter().find(|s| s.name() == job.case);
-        let shape = *shape.ok_or_else(|| format!("no shape `{}`", job.case))?;
+        let shape = job.find_case(self.shapes.iter().copied(), |shape| shape.name())?;
         let method = Method::ALL.into_iter().find(|m| m.name() == job.algorithm);
         let rows = match method {
             Some(method) => self.fields(shape, method, context)?,
@@ -222,13 +203,8 @@ impl Experiment for Settings {
         summary::summarize(self, rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        _algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }
 

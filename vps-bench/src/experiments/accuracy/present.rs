@@ -1,27 +1,21 @@
 //! Presents the tables of errors.
 
-use std::path::Path;
-
 use polars::prelude::DataFrame;
 
 use super::{Method, SHELL, Settings};
 use crate::data::dataframe::{Row, rows};
 use crate::data::number_format::{fixed, significant};
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::experiments::shared::power_law::{Labels, Series, color, figure};
 use crate::report::document::{Block, Table};
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
-    let (field, shell) = (table(tables, "field")?, table(tables, "shell")?);
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+    let (field, shell) = (page.table("field")?, page.table("shell")?);
     let shapes: Vec<_> = settings.shapes.iter().map(|s| s.name()).collect();
     let mut blocks = vec![
-        slopes("Slopes by voxel size", table(tables, "field_slopes")?),
-        slopes("Slopes by number of points", table(tables, "shell_slopes")?),
+        slopes("Slopes by voxel size", page.table("field_slopes")?),
+        slopes("Slopes by number of points", page.table("shell_slopes")?),
         values("Voxelmaps by voxel size", "voxel, mm", field),
         values("Pointshells by number of points", "points", shell),
     ];
@@ -56,7 +50,7 @@ pub(super) fn present(
             x: "voxel size (mm)",
             y: "root mean square error (mm)",
         };
-        blocks.push(figure(&labels, by_method(shape, "error_mm_rms"), folder)?);
+        blocks.push(figure(&labels, by_method(shape, "error_mm_rms"), page)?);
         let labels = Labels {
             stem: &format!("field_force_{shape}"),
             title: &format!("Error of the force on a cube in the voxelmap of a {shape}"),
@@ -66,7 +60,7 @@ pub(super) fn present(
         blocks.push(figure(
             &labels,
             by_method(shape, "force_error_median"),
-            folder,
+            page,
         )?);
     }
     let of_shells = [
@@ -96,7 +90,7 @@ pub(super) fn present(
             x: "points",
             y,
         };
-        blocks.push(figure(&labels, by_shape(column), folder)?);
+        blocks.push(figure(&labels, by_shape(column), page)?);
     }
     Ok(blocks)
 }

@@ -5,12 +5,9 @@ mod present;
 mod simulate;
 mod summary;
 
-use std::path::Path;
-
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::{not_negative, positive};
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -18,6 +15,7 @@ use crate::experiments::experiment::{Experiment, Measurement};
 use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::report::document::Block;
+use crate::report::page::Page;
 use exact::ExactBounce;
 
 /// The ball, and how it is dropped.
@@ -81,11 +79,6 @@ impl Settings {
                 prediction_m,
             })
         })
-    }
-
-    fn case(&self, name: &str) -> Result<Case, String> {
-        let case = self.cases().find(|case| case.name() == name);
-        case.ok_or_else(|| format!("no case `{name}`"))
     }
 
     fn drawn_cases(&self) -> impl Iterator<Item = Case> {
@@ -158,37 +151,27 @@ impl Experiment for Settings {
         } else {
             self.orientations
         };
-        let mut jobs = Vec::new();
-        for seed in 0..seeds {
-            for case in self.cases() {
-                jobs.extend(Job::of_each(&self.algorithms, case.name(), seed));
-            }
-        }
-        jobs
+        let cases: Vec<_> = self.cases().map(Case::name).collect();
+        Job::of_all(seeds, &cases, &self.algorithms)
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        let of_jobs = Self {
-            restitutions: Vec::new(),
-            predictions_m: Vec::new(),
-            orientations: 0,
-            quick_orientations: 0,
-            algorithms: Vec::new(),
-            paper_value: Vec::new(),
-            ..self.clone()
-        };
-        Ok(serde_json::to_string(&of_jobs)?)
-    }
-
-    fn identity(&self, _: &Context) -> Result<String, String> {
-        Ok(String::new())
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &[
+            "restitutions",
+            "predictions_m",
+            "orientations",
+            "quick_orientations",
+            "algorithms",
+            "paper_value",
+        ]
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let ball = (self.radius_m, self.subdivisions);
         let ready = context.prepare_ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
-        let rows = self.simulate(prepared, self.case(&job.case)?, job.seed)?;
+        let case = job.find_case(self.cases(), |case| case.name())?;
+        let rows = self.simulate(prepared, case, job.seed)?;
         Measurement::of(&rows, &ready.preparation)
     }
 
@@ -196,12 +179,7 @@ impl Experiment for Settings {
         summary::summarize(self, rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

@@ -1,31 +1,23 @@
 //! Presents the tables of bouncing balls.
 
-use std::path::Path;
-
 use plotters::style::RGBColor;
 use polars::prelude::DataFrame;
 
 use super::{Case, Settings};
-use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows_of};
 use crate::data::number_format::fixed;
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
 use crate::figures::figure::{Curve, Figure, ReferenceLine};
-use crate::report::document::{Block, FigureLink, Table};
+use crate::report::document::{Block, Table};
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
     let presentation = Presentation {
         settings,
-        summary: table(tables, "summary")?,
-        course: table(tables, "course")?,
-        algorithms,
+        summary: page.table("summary")?,
+        course: page.table("course")?,
+        page,
     };
     let mut blocks = vec![
         presentation.penetrations()?,
@@ -33,7 +25,7 @@ pub(super) fn present(
         presentation.drifts()?,
     ];
     for case in settings.drawn_cases() {
-        blocks.push(presentation.heights(case, folder)?);
+        blocks.push(presentation.heights(case)?);
     }
     Ok(blocks)
 }
@@ -42,7 +34,7 @@ struct Presentation<'p> {
     settings: &'p Settings,
     summary: &'p DataFrame,
     course: &'p DataFrame,
-    algorithms: &'p Algorithms,
+    page: &'p Page<'p>,
 }
 
 /// Colour of the exact solution and its rebound height.
@@ -64,7 +56,7 @@ impl Presentation<'_> {
     ) -> Result<Block, Error> {
         let mut head: Vec<_> = first.iter().map(|h| (*h).to_owned()).collect();
         for name in &self.settings.algorithms {
-            head.push(self.algorithms.get(name)?.label.clone());
+            head.push(self.page.label(name)?.into());
         }
         let head: Vec<_> = head.iter().map(String::as_str).collect();
         let mut table = Table::new(caption, &head);
@@ -136,7 +128,7 @@ impl Presentation<'_> {
     }
 
     /// Fig. 6, for one coefficient of restitution.
-    fn heights(&self, case: Case, folder: &Path) -> Result<Block, Error> {
+    fn heights(&self, case: Case) -> Result<Block, Error> {
         let settings = self.settings;
         let exact = settings.exact(case.restitution);
         let mut curves = vec![Curve {
@@ -154,7 +146,7 @@ impl Presentation<'_> {
         for algorithm in &settings.algorithms {
             let course = rows_of(self.course, &name, algorithm);
             let points = course.filter_map(|r| r.number("time_s").zip(r.number("height_m")));
-            let of_list = self.algorithms.get(algorithm)?;
+            let of_list = self.page.algorithms.get(algorithm)?;
             curves.push(Curve {
                 label: of_list.label.clone(),
                 color: of_list.rgb(),
@@ -169,7 +161,7 @@ impl Presentation<'_> {
         );
         let fall = settings.drop_height_m - settings.radius_m;
         let figure = Figure {
-            title: title.clone(),
+            title,
             x: Axis::linear("time (s)", 0.0..settings.duration_s),
             // Space for the legend above the curves.
             y: Axis::linear(
@@ -184,12 +176,7 @@ impl Presentation<'_> {
             }],
             reference_label: "exact height after the first bounce".into(),
         };
-        let stem = format!("height_{name}");
-        figure.write(folder, &stem)?;
-        Ok(Block::Figure(FigureLink {
-            file: format!("{stem}.svg"),
-            caption: title,
-        }))
+        self.page.figure(&format!("height_{name}"), &figure)
     }
 }
 

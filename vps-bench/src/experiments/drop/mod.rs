@@ -4,7 +4,6 @@ mod present;
 mod simulate;
 mod summary;
 
-use std::path::Path;
 use std::rc::Rc;
 
 use polars::prelude::DataFrame;
@@ -12,7 +11,6 @@ use rapier3d::math::Pose;
 use serde::{Deserialize, Serialize};
 
 use self::simulate::StepRow;
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::{not_negative, positive};
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -21,6 +19,7 @@ use crate::harness::context::{Body, Context};
 use crate::harness::job::Job;
 use crate::harness::prepare::PreparedAlgorithm;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// The falling body, the ground, and the start.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -195,29 +194,22 @@ impl Experiment for Settings {
     }
 
     fn jobs(&self, quick: bool) -> Vec<Job> {
-        let seeds = self.seeds(quick);
-        let mut jobs = Vec::new();
-        for seed in 0..seeds {
-            for &frequency in &self.frequencies_hz {
-                jobs.extend(Job::of_each(&self.algorithms, Self::case(frequency), seed));
-            }
-        }
-        jobs
+        let cases = self.frequencies_hz.iter().map(|f| Self::case(*f));
+        let cases: Vec<_> = cases.collect();
+        Job::of_all(self.seeds(quick), &cases, &self.algorithms)
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        let of_jobs = Self {
-            frequencies_hz: Vec::new(),
-            orientations: 0,
-            quick_orientations: 0,
-            measured_s: [0.0; 2],
-            algorithms: Vec::new(),
-            reference: None,
-            show: Vec::new(),
-            paper_value: Vec::new(),
-            ..self.clone()
-        };
-        Ok(serde_json::to_string(&of_jobs)?)
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &[
+            "frequencies_hz",
+            "orientations",
+            "quick_orientations",
+            "measured_s",
+            "algorithms",
+            "reference",
+            "show",
+            "paper_value",
+        ]
     }
 
     fn identity(&self, context: &Context) -> Result<String, String> {
@@ -227,11 +219,7 @@ impl Experiment for Settings {
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let (body, ready) = self.prepare(context, &job.algorithm)?;
         let prepared = ready.prepared()?;
-        let frequency = self
-            .frequencies_hz
-            .iter()
-            .find(|f| Self::case(**f) == job.case);
-        let frequency = *frequency.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let frequency = job.find_case(self.frequencies_hz.iter().copied(), |f| Self::case(*f))?;
         let rows = self.simulate(&body, prepared, frequency, job.seed)?;
         Measurement::of(&rows, &ready.preparation)
     }
@@ -240,12 +228,7 @@ impl Experiment for Settings {
         summary::summarize(self, rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

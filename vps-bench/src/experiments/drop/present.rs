@@ -1,32 +1,22 @@
 //! Presents the tables of falling bodies.
 
-use std::path::Path;
-
 use polars::prelude::DataFrame;
 
 use super::{Settings, Show};
-use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows_of};
 use crate::data::number_format::{fixed, significant};
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
 use crate::figures::figure::{Curve, Figure, ReferenceLine, decades};
-use crate::report::document::{Block, FigureLink, Table};
+use crate::report::document::{Block, Table};
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
-    let (summary, course) = (table(tables, "summary")?, table(tables, "course")?);
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
     let presentation = Presentation {
         settings,
-        summary,
-        course,
-        algorithms,
-        folder,
+        summary: page.table("summary")?,
+        course: page.table("course")?,
+        page,
     };
     let mut blocks = Vec::new();
     for show in &settings.show {
@@ -48,8 +38,8 @@ pub(super) fn present(
                 1e-5,
             )?),
             Show::Spin => {
-                blocks.push(presentation.spin(table(tables, "turning")?)?);
-                blocks.push(presentation.spectrum(table(tables, "spectrum")?)?);
+                blocks.push(presentation.spin(page.table("turning")?)?);
+                blocks.push(presentation.spectrum(page.table("spectrum")?)?);
             }
             Show::Frequencies => {
                 blocks.push(presentation.falls_through()?);
@@ -64,15 +54,10 @@ struct Presentation<'p> {
     settings: &'p Settings,
     summary: &'p DataFrame,
     course: &'p DataFrame,
-    algorithms: &'p Algorithms,
-    folder: &'p Path,
+    page: &'p Page<'p>,
 }
 
 impl Presentation<'_> {
-    fn label(&self, algorithm: &str) -> Result<String, Error> {
-        Ok(self.algorithms.get(algorithm)?.label.clone())
-    }
-
     /// The row of an algorithm in a case.
     fn of(&self, case: &str, algorithm: &str) -> Option<Row<'_>> {
         rows_of(self.summary, case, algorithm).next()
@@ -89,7 +74,7 @@ impl Presentation<'_> {
         let frequency = self.settings.frequencies_hz[0];
         let [from, to] = self.settings.measured_steps(frequency);
         let against = match &self.settings.reference {
-            Some(name) => format!("against {}", self.label(name)?),
+            Some(name) => format!("against {}", self.page.label(name)?),
             None => "against the first".into(),
         };
         let mut table = Table::new(
@@ -121,7 +106,7 @@ impl Presentation<'_> {
             };
             let number = |column: &str| row.number(column);
             table.push([
-                self.label(name)?,
+                self.page.label(name)?.into(),
                 significant(number("query_us_mean")),
                 significant(number("query_us_median")),
                 significant(number("query_us_p99")),
@@ -153,7 +138,7 @@ impl Presentation<'_> {
                 .collect();
             let runs = points.chunk_by(|a, b| a.1.is_some() == b.1.is_some());
             let runs = runs.map(|run| run.iter().filter_map(|(x, y)| Some((*x, (*y)?))).collect());
-            let algorithm = self.algorithms.get(name)?;
+            let algorithm = self.page.algorithms.get(name)?;
             curves.push(Curve {
                 label: algorithm.label.clone(),
                 color: algorithm.rgb(),
@@ -177,7 +162,7 @@ impl Presentation<'_> {
         let mut reference_lines = Vec::new();
         for value in &self.settings.paper_value {
             reference_lines.push(ReferenceLine {
-                color: self.algorithms.get(&value.algorithm)?.rgb(),
+                color: self.page.algorithms.get(&value.algorithm)?.rgb(),
                 x: f64::from(from)..f64::from(to),
                 y: value.query_us,
             });
@@ -193,8 +178,7 @@ impl Presentation<'_> {
             reference_label: "mean in the paper (same colours)".into(),
             reference_lines,
         };
-        figure.write(self.folder, "query_time")?;
-        Ok(link("query_time", figure.title))
+        self.page.figure("query_time", &figure)
     }
 
     fn by_step(
@@ -214,8 +198,7 @@ impl Presentation<'_> {
             reference_lines: Vec::new(),
             reference_label: String::new(),
         };
-        figure.write(self.folder, stem)?;
-        Ok(link(stem, figure.title))
+        self.page.figure(stem, &figure)
     }
 
     /// How evenly bodies roll: "discrete transitions" are changes of spin far above the median.
@@ -247,7 +230,7 @@ impl Presentation<'_> {
                 .zip(power("power_rad2_s2"))
                 .map(|(fast, all)| 100.0 * fast / all);
             table.push([
-                self.label(name)?,
+                self.page.label(name)?.into(),
                 fixed(row.number("rolling_steps"), 0),
                 significant(median),
                 significant(p99),
@@ -265,7 +248,7 @@ impl Presentation<'_> {
         let case = self.first_case();
         let mut curves = Vec::new();
         for name in &self.settings.algorithms {
-            let algorithm = self.algorithms.get(name)?;
+            let algorithm = self.page.algorithms.get(name)?;
             let points = rows_of(spectrum, &case, name).filter_map(|row| {
                 let power = row.number("power_rad2_s2_per_hz")?;
                 Some((row.number("turning_hz")?, power))
@@ -290,8 +273,7 @@ impl Presentation<'_> {
             reference_lines: Vec::new(),
             reference_label: String::new(),
         };
-        figure.write(self.folder, "spin_spectrum")?;
-        Ok(link("spin_spectrum", figure.title))
+        self.page.figure("spin_spectrum", &figure)
     }
 
     /// A row for each algorithm, a column for each frequency.
@@ -300,20 +282,11 @@ impl Presentation<'_> {
         caption: &str,
         cell: impl Fn(&Row<'_>) -> String,
     ) -> Result<Block, Error> {
-        let frequencies = &self.settings.frequencies_hz;
-        let mut head = vec!["algorithm".to_owned()];
-        head.extend(frequencies.iter().map(|f| format!("{f} Hz")));
-        let head: Vec<_> = head.iter().map(String::as_str).collect();
-        let mut table = Table::new(caption, &head);
-        for name in &self.settings.algorithms {
-            let cells = frequencies.iter().map(|f| {
-                let row = self.of(&Settings::case(*f), name);
-                row.map_or_else(|| "–".into(), |row| cell(&row))
-            });
-            let cells: Vec<_> = cells.collect();
-            table.push([self.label(name)?].into_iter().chain(cells));
-        }
-        Ok(Block::Table(table))
+        let frequencies = self.settings.frequencies_hz.iter();
+        let cases = frequencies.map(|&f| (format!("{f} Hz"), Settings::case(f)));
+        let cases: Vec<_> = cases.collect();
+        self.page
+            .by_case(caption, &self.settings.algorithms, &cases, cell)
     }
 
     fn falls_through(&self) -> Result<Block, Error> {
@@ -334,11 +307,4 @@ impl Presentation<'_> {
             fixed(row.number("true_penetration_mm_max"), 1)
         })
     }
-}
-
-fn link(stem: &str, caption: String) -> Block {
-    Block::Figure(FigureLink {
-        file: format!("{stem}.svg"),
-        caption,
-    })
 }

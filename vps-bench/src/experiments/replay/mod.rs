@@ -8,7 +8,6 @@ mod answer;
 mod present;
 mod summary;
 
-use std::path::Path;
 use std::time::Instant;
 
 use polars::prelude::DataFrame;
@@ -16,7 +15,6 @@ use rapier3d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 use vps_compare::{Contacts, Prepared};
 
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::{not_negative, positive};
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -25,6 +23,7 @@ use crate::experiments::experiment::{Experiment, Measurement};
 use crate::harness::context::{Body, Context};
 use crate::harness::job::Job;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// The recorded fall, and the algorithms that are queried.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -143,15 +142,20 @@ impl Experiment for Settings {
     }
 
     fn jobs(&self, quick: bool) -> Vec<Job> {
-        let seeds = self.fall.seeds(quick);
-        let of_seed = |seed| Job::of_each(&self.algorithms, "fall".into(), seed);
-        (0..seeds).flat_map(of_seed).collect()
+        Job::of_all(self.fall.seeds(quick), &["fall".into()], &self.algorithms)
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        let frequency = self.fall.frequencies_hz[0];
-        let fall = self.fall.settings()?;
-        Ok(format!("{fall} {frequency} {}", self.passes))
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &[
+            "algorithms",
+            "tolerance_m",
+            "fall.orientations",
+            "fall.quick_orientations",
+            "fall.measured_s",
+            "fall.reference",
+            "fall.show",
+            "fall.paper_value",
+        ]
     }
 
     fn identity(&self, context: &Context) -> Result<String, String> {
@@ -172,12 +176,7 @@ impl Experiment for Settings {
         summary::summarize(self, rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

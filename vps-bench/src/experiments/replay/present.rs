@@ -1,30 +1,23 @@
 //! Presents the tables of replayed poses.
 
-use std::path::Path;
-
 use super::Settings;
-use crate::config::algorithms::{Algorithm, Algorithms};
+use crate::config::algorithms::Algorithm;
 use crate::data::dataframe::{Row, rows};
 use crate::data::number_format::{fixed, significant};
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
 use crate::figures::figure::{Curve, Figure, decades};
-use crate::report::document::{Block, FigureLink, Table};
+use crate::report::document::{Block, Table};
+use crate::report::page::Page;
 
 /// Smaller errors are drawn at this one, in mm: they are those of 32-bit numbers.
 const MIN_ERROR_MM: f64 = 1e-5;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
-    let summary = table(tables, "summary")?;
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+    let summary = page.table("summary")?;
     let mut of_each = Vec::new();
     for name in &settings.algorithms {
-        let algorithm = algorithms.get(name)?;
+        let algorithm = page.algorithms.get(name)?;
         if let Some(row) = rows(summary).find(|row| row.text("algorithm") == *name) {
             of_each.push((algorithm, row));
         }
@@ -115,14 +108,10 @@ pub(super) fn present(
         reference_lines: Vec::new(),
         reference_label: String::new(),
     };
-    figure.write(folder, "time_and_error")?;
     Ok(vec![
         Block::Table(times),
         Block::Table(errors),
-        Block::Figure(FigureLink {
-            file: "time_and_error.svg".into(),
-            caption: figure.title,
-        }),
+        page.figure("time_and_error", &figure)?,
     ])
 }
 

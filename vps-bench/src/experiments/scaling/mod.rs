@@ -5,12 +5,9 @@ mod present;
 mod queries;
 mod summary;
 
-use std::path::Path;
-
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::positive;
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -19,6 +16,7 @@ use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::harness::prepare::Preparation;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// The quantities that grow; the others are as for the fine shell.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -227,11 +225,8 @@ impl Experiment for Settings {
             let kinds = case.queries().iter().map(|kind| kind.name().to_owned());
             let algorithms = self.bodies.algorithms.iter().cloned();
             let algorithms = algorithms.filter(|_| case == Case::Bodies);
-            jobs.extend(kinds.chain(algorithms).map(|algorithm| Job {
-                case: case.name().into(),
-                algorithm,
-                seed: 0,
-            }));
+            let measured = kinds.chain(algorithms);
+            jobs.extend(measured.map(|what| Job::new(case.name(), what, 0)));
         }
         if quick {
             jobs.retain(|job| job.algorithm != QueryKind::Trimesh.name());
@@ -239,17 +234,12 @@ impl Experiment for Settings {
         jobs
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        Ok(serde_json::to_string(self)?)
-    }
-
     fn identity(&self, context: &Context) -> Result<String, String> {
         Ok(context.body(&self.model, self.scale)?.identity.clone())
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
-        let case = Case::ALL.into_iter().find(|case| case.name() == job.case);
-        let case = case.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let case = job.find_case(Case::ALL, |case| case.name())?;
         let kind = QueryKind::ALL
             .into_iter()
             .find(|kind| kind.name() == job.algorithm);
@@ -264,12 +254,7 @@ impl Experiment for Settings {
         summary::summarize(self, rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

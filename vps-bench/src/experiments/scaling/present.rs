@@ -1,23 +1,16 @@
 //! Presents the tables of times.
 
-use std::path::Path;
-
 use super::{Case, QueryKind, Settings};
-use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::rows;
 use crate::data::number_format::{fixed, significant};
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::experiments::shared::power_law::{Labels, Series, color, figure};
 use crate::report::document::{Block, Table};
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
-    let (times, slopes) = (table(tables, "times")?, table(tables, "slopes")?);
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+    let (times, slopes) = (page.table("times")?, page.table("slopes")?);
+    let algorithms = page.algorithms;
     let label = |name: &str| -> String {
         let kind = QueryKind::ALL.into_iter().find(|kind| kind.name() == name);
         let listed = algorithms.get(name).map(|a| a.label.clone());
@@ -66,7 +59,7 @@ pub(super) fn present(
             x: case.label(),
             y,
         };
-        blocks.push(figure(&labels, series, folder)?);
+        blocks.push(figure(&labels, series, page)?);
         let head = [
             case.label(),
             "query",

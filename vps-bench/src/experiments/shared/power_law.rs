@@ -1,7 +1,5 @@
 //! Figures of power laws: both axes logarithmic, so that y = c x^p is a line of slope p.
 
-use std::path::Path;
-
 use plotters::style::RGBColor;
 
 use crate::data::number_format::fixed;
@@ -9,7 +7,8 @@ use crate::data::stats::power_law_exponent;
 use crate::error::Error;
 use crate::figures::axis::Axis;
 use crate::figures::figure::{Curve, Figure, decades};
-use crate::report::document::{Block, FigureLink};
+use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// Values by size.
 pub(crate) struct Series {
@@ -46,7 +45,7 @@ pub(crate) fn color(number: usize) -> RGBColor {
 pub(crate) fn figure(
     labels: &Labels<'_>,
     series: impl IntoIterator<Item = Series>,
-    folder: &Path,
+    page: &Page<'_>,
 ) -> Result<Block, Error> {
     let is_positive = |v: &f64| *v > 0.0 && v.is_finite();
     let mut curves = Vec::new();
@@ -87,9 +86,5 @@ pub(crate) fn figure(
         reference_lines: Vec::new(),
         reference_label: String::new(),
     };
-    drawn.write(folder, labels.stem)?;
-    Ok(Block::Figure(FigureLink {
-        file: format!("{}.svg", labels.stem),
-        caption: drawn.title,
-    }))
+    page.figure(labels.stem, &drawn)
 }

@@ -4,12 +4,9 @@ mod present;
 mod simulate;
 mod summary;
 
-use std::path::Path;
-
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::{not_negative, positive};
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -17,6 +14,7 @@ use crate::experiments::experiment::{Experiment, Measurement};
 use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// The balls, and how they are stacked.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -94,37 +92,19 @@ impl Experiment for Settings {
         } else {
             self.stacks
         };
-        let mut jobs = Vec::new();
-        for seed in 0..seeds {
-            for &balls in &self.balls {
-                jobs.extend(Job::of_each(&self.algorithms, Self::case(balls), seed));
-            }
-        }
-        jobs
+        let cases: Vec<_> = self.balls.iter().map(|n| Self::case(*n)).collect();
+        Job::of_all(seeds, &cases, &self.algorithms)
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        let of_jobs = Self {
-            balls: Vec::new(),
-            stacks: 0,
-            quick_stacks: 0,
-            algorithms: Vec::new(),
-            ..self.clone()
-        };
-        Ok(serde_json::to_string(&of_jobs)?)
-    }
-
-    fn identity(&self, _: &Context) -> Result<String, String> {
-        Ok(String::new())
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &["balls", "stacks", "quick_stacks", "algorithms"]
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
         let ball = (self.radius_m, self.subdivisions);
         let ready = context.prepare_ball_on_box(&job.algorithm, ball, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
-        let mut cases = self.balls.iter();
-        let balls = cases.find(|balls| Self::case(**balls) == job.case);
-        let balls = *balls.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let balls = job.find_case(self.balls.iter().copied(), |n| Self::case(*n))?;
         let row = self.simulate(prepared, balls, job.seed)?;
         Measurement::of(&[row], &ready.preparation)
     }
@@ -133,12 +113,7 @@ impl Experiment for Settings {
         summary::summarize(self, rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        _: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

@@ -1,21 +1,17 @@
 //! Presents the tables of stacks.
 
-use polars::prelude::DataFrame;
-
 use super::Settings;
-use crate::config::algorithms::Algorithms;
-use crate::data::dataframe::{Row, rows_of};
+use crate::data::dataframe::Row;
 use crate::data::number_format::fixed;
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
-use crate::report::document::{Block, Table};
+use crate::report::document::Block;
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-) -> Result<Vec<Block>, Error> {
-    let summary = table(tables, "summary")?;
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+    let cases = settings.balls.iter();
+    let cases = cases.map(|&n| (format!("{n} balls"), Settings::case(n)));
+    let cases: Vec<_> = cases.collect();
+    let algorithms = &settings.algorithms;
     let stood = |row: &Row<'_>| {
         let time = |column: &str| match row.number(column) {
             Some(time) if time >= settings.duration_s => format!("> {}", settings.duration_s),
@@ -34,48 +30,18 @@ pub(super) fn present(
     };
     let depth = |row: &Row<'_>| fixed(row.number("true_penetration_mm_max"), 1);
     Ok(vec![
-        by_balls(
-            settings,
-            summary,
-            algorithms,
+        page.by_case(
             "Time standing in s: median of all stacks (and quartiles)",
+            algorithms,
+            &cases,
             stood,
         )?,
-        by_balls(settings, summary, algorithms, "Stacks that fell", fell)?,
-        by_balls(
-            settings,
-            summary,
-            algorithms,
+        page.by_case("Stacks that fell", algorithms, &cases, fell)?,
+        page.by_case(
             "True penetration at its deepest while standing, mm",
+            algorithms,
+            &cases,
             depth,
         )?,
     ])
-}
-
-/// A row for each algorithm, a column for each number of balls.
-fn by_balls(
-    settings: &Settings,
-    summary: &DataFrame,
-    algorithms: &Algorithms,
-    caption: &str,
-    cell: impl Fn(&Row<'_>) -> String,
-) -> Result<Block, Error> {
-    let mut head = vec!["algorithm".to_owned()];
-    head.extend(settings.balls.iter().map(|n| format!("{n} balls")));
-    let head: Vec<_> = head.iter().map(String::as_str).collect();
-    let mut table = Table::new(caption, &head);
-    for name in &settings.algorithms {
-        let cells = settings.balls.iter().map(|&balls| {
-            let case = Settings::case(balls);
-            let row = rows_of(summary, &case, name).next();
-            row.map_or_else(|| "–".into(), |row| cell(&row))
-        });
-        let cells: Vec<_> = cells.collect();
-        table.push(
-            [algorithms.get(name)?.label.clone()]
-                .into_iter()
-                .chain(cells),
-        );
-    }
-    Ok(Block::Table(table))
 }

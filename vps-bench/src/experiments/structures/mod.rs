@@ -22,6 +22,7 @@ use crate::experiments::experiment::{Experiment, Measurement};
 use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::report::document::Block;
+use crate::report::page::Page;
 
 /// The assets that are built and drawn.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -159,29 +160,36 @@ impl Experiment for Settings {
         } else {
             self.builds
         };
-        let job = |case: &str, algorithm: &str, seed| Job {
-            case: case.into(),
-            algorithm: algorithm.into(),
-            seed,
-        };
         let mut jobs = Vec::new();
         for seed in 0..builds {
             for (case, map) in VOXELMAPS {
                 if !(quick && map.is_slow()) {
-                    jobs.push(job(case, self.finest(), seed));
+                    jobs.push(Job::new(case, self.finest(), seed));
                 }
             }
             for algorithm in &self.shells {
                 for case in SHELLS {
-                    jobs.push(job(case, algorithm, seed));
+                    jobs.push(Job::new(case, algorithm, seed));
                 }
             }
         }
         jobs
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        Ok(format!("{} x {}", self.model, self.scale))
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &[
+            "shells",
+            "builds",
+            "quick_builds",
+            "hull",
+            "decomposition",
+            "segments_level",
+            "drawn_voxels",
+            "traverse_step",
+            "traverse_depth_m",
+            "fall_steps",
+            "fall",
+        ]
     }
 
     fn identity(&self, context: &Context) -> Result<String, String> {
@@ -200,12 +208,7 @@ impl Experiment for Settings {
         Ok(pictures::draw(self, context, folder)?)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

@@ -1,31 +1,23 @@
 //! Presents the tables of builds, and the pictures.
 
-use std::path::Path;
-
 use super::pictures::PICTURES;
 use super::{SHELLS, Settings};
-use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows};
 use crate::data::number_format::{fixed, significant};
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::report::document::{Block, FigureLink, Table};
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
-    let mut blocks = vec![Block::Table(voxelmaps(rows(table(tables, "voxelmaps")?)))];
-    let shells = rows(table(tables, "pointshells")?);
-    blocks.push(Block::Table(pointshells(shells, algorithms)?));
-    let levels: Vec<_> = rows(table(tables, "levels")?).collect();
-    blocks.push(Block::Table(clusters(settings, &levels, algorithms)?));
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+    let mut blocks = vec![Block::Table(voxelmaps(rows(page.table("voxelmaps")?)))];
+    let shells = rows(page.table("pointshells")?);
+    blocks.push(Block::Table(pointshells(shells, page)?));
+    let levels: Vec<_> = rows(page.table("levels")?).collect();
+    blocks.push(Block::Table(clusters(settings, &levels, page)?));
     let mut missing = Vec::new();
     for picture in &PICTURES {
         let file = format!("{}.png", picture.stem);
-        if folder.join(&file).exists() {
+        if page.folder.join(&file).exists() {
             let caption = picture.caption.into();
             blocks.push(Block::Figure(FigureLink { file, caption }));
         } else {
@@ -93,10 +85,7 @@ fn clustering(case: &str) -> &str {
     }
 }
 
-fn pointshells<'f>(
-    rows: impl Iterator<Item = Row<'f>>,
-    algorithms: &Algorithms,
-) -> Result<Table, Error> {
+fn pointshells<'f>(rows: impl Iterator<Item = Row<'f>>, page: &Page<'_>) -> Result<Table, Error> {
     let mut table = Table::new(
         "Pointshells by how points are put into clusters",
         &[
@@ -114,7 +103,7 @@ fn pointshells<'f>(
     for row in rows {
         let number = |column: &str| row.number(column);
         table.push([
-            algorithms.get(&row.text("algorithm"))?.label.clone(),
+            page.label(&row.text("algorithm"))?.into(),
             clustering(&row.text("case")).into(),
             fixed(number("points"), 0),
             fixed(number("levels"), 0),
@@ -129,11 +118,7 @@ fn pointshells<'f>(
 }
 
 /// A row for each shell, a column for each level.
-fn clusters(
-    settings: &Settings,
-    levels: &[Row<'_>],
-    algorithms: &Algorithms,
-) -> Result<Table, Error> {
+fn clusters(settings: &Settings, levels: &[Row<'_>], page: &Page<'_>) -> Result<Table, Error> {
     let numbers = levels.iter().filter_map(|row| row.number("level"));
     let deepest = numbers.fold(0.0, f64::max) as u32;
     let heads: Vec<_> = (1..=deepest).map(|level| format!("L = {level}")).collect();
@@ -161,7 +146,7 @@ fn clusters(
                 })
             };
             let cells: Vec<_> = (1..=deepest).map(cell).collect();
-            let label = algorithms.get(name)?.label.clone();
+            let label = page.label(name)?.to_owned();
             table.push(
                 [label, clustering(case).to_owned()]
                     .into_iter()

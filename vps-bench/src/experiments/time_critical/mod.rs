@@ -5,7 +5,6 @@ mod measure;
 mod present;
 mod summary;
 
-use std::path::Path;
 use std::time::Duration;
 
 use polars::prelude::DataFrame;
@@ -13,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use vps_compare::Algorithm;
 use vps_rapier::{Sampling, VpsShape};
 
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::{not_negative, positive};
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -21,6 +19,7 @@ use crate::experiments::experiment::{Experiment, Measurement};
 use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::report::document::Block;
+use crate::report::page::Page;
 use measure::{Poses, measure};
 
 /// Body, poses, budgets and deadlines.
@@ -148,23 +147,22 @@ impl Experiment for Settings {
         let mut jobs = Vec::new();
         for seed in 0..self.deadline_batches.max(self.budget_batches) {
             for limit in self.limits().filter(|limit| seed < batches(*limit)) {
-                jobs.extend(Job::of_each(&self.algorithms, limit.case(), seed));
+                let algorithms = self.algorithms.iter();
+                jobs.extend(algorithms.map(|a| Job::new(limit.case(), a, seed)));
             }
         }
         jobs
     }
 
-    fn settings(&self) -> Result<String, Error> {
-        let of_jobs = Self {
-            budget_points: Vec::new(),
-            deadline_us: Vec::new(),
-            deadline_batches: 0,
-            budget_batches: 0,
-            quick_batches: 0,
-            algorithms: Vec::new(),
-            ..self.clone()
-        };
-        Ok(serde_json::to_string(&of_jobs)?)
+    fn planning_keys(&self) -> &'static [&'static str] {
+        &[
+            "budget_points",
+            "deadline_us",
+            "deadline_batches",
+            "budget_batches",
+            "quick_batches",
+            "algorithms",
+        ]
     }
 
     fn identity(&self, context: &Context) -> Result<String, String> {
@@ -175,8 +173,7 @@ impl Experiment for Settings {
         let Algorithm::Vps(method) = &context.algorithms.get(&job.algorithm)?.method else {
             return Err("only the method vps has a time-critical query".into());
         };
-        let limit = self.limits().find(|limit| limit.case() == job.case);
-        let limit = limit.ok_or_else(|| format!("no case `{}`", job.case))?;
+        let limit = job.find_case(self.limits(), |limit| limit.case())?;
         let body = context.body(&self.model, self.scale)?;
         let ready = context.prepare_on_box(&job.algorithm, &body, self.ground_extents_m)?;
         let prepared = ready.prepared()?;
@@ -199,12 +196,7 @@ impl Experiment for Settings {
         summary::summarize(rows)
     }
 
-    fn present(
-        &self,
-        tables: &Tables,
-        algorithms: &Algorithms,
-        folder: &Path,
-    ) -> Result<Vec<Block>, Error> {
-        present::present(self, tables, algorithms, folder)
+    fn present(&self, page: &Page<'_>) -> Result<Vec<Block>, Error> {
+        present::present(self, page)
     }
 }

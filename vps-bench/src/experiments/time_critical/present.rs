@@ -1,31 +1,22 @@
 //! Presents the tables of time-critical queries.
 
-use std::path::Path;
-
 use plotters::style::RGBColor;
 use polars::prelude::DataFrame;
 
 use super::{Limit, Settings};
-use crate::config::algorithms::Algorithms;
 use crate::data::dataframe::{Row, rows_of};
 use crate::data::number_format::{fixed, significant};
-use crate::data::tables::{Tables, table};
 use crate::error::Error;
 use crate::figures::axis::Axis;
 use crate::figures::figure::{Curve, Figure, decades};
-use crate::report::document::{Block, FigureLink, Table};
+use crate::report::document::{Block, Table};
+use crate::report::page::Page;
 
-pub(super) fn present(
-    settings: &Settings,
-    tables: &Tables,
-    algorithms: &Algorithms,
-    folder: &Path,
-) -> Result<Vec<Block>, Error> {
+pub(super) fn present(settings: &Settings, page: &Page<'_>) -> Result<Vec<Block>, Error> {
     let presentation = Presentation {
         settings,
-        summary: table(tables, "summary")?,
-        algorithms,
-        folder,
+        summary: page.table("summary")?,
+        page,
     };
     let mut blocks = Vec::new();
     for name in &settings.algorithms {
@@ -52,8 +43,7 @@ pub(super) fn present(
 struct Presentation<'p> {
     settings: &'p Settings,
     summary: &'p DataFrame,
-    algorithms: &'p Algorithms,
-    folder: &'p Path,
+    page: &'p Page<'p>,
 }
 
 /// Quantiles, their columns and colours.
@@ -69,10 +59,6 @@ impl Presentation<'_> {
         rows_of(self.summary, &case, algorithm).next()
     }
 
-    fn label(&self, algorithm: &str) -> Result<&str, Error> {
-        Ok(&self.algorithms.get(algorithm)?.label)
-    }
-
     /// Median, 99th percentile and largest.
     fn quantiles(row: &Row<'_>, what: &str, factor: f64) -> String {
         let number = |q: &str| {
@@ -86,7 +72,7 @@ impl Presentation<'_> {
         let mut table = Table::new(
             format!(
                 "{}: error by budget, median / 99th percentile / largest",
-                self.label(algorithm)?
+                self.page.label(algorithm)?
             ),
             &[
                 "points tested at most",
@@ -120,7 +106,7 @@ impl Presentation<'_> {
         let mut table = Table::new(
             format!(
                 "{}: deadlines, the query stopped {} µs before",
-                self.label(algorithm)?,
+                self.page.label(algorithm)?,
                 self.settings.reserve_us
             ),
             &[
@@ -198,9 +184,8 @@ impl Presentation<'_> {
         let low = low.min(high).log10().floor();
         let x = decade(low)..decade(high.log10().ceil().max(low + 1.0));
         let y = decades(&curves, &[], 1e-4);
-        let title = format!("{title}, {}", self.label(algorithm)?);
         let figure = Figure {
-            title: title.clone(),
+            title: format!("{title}, {}", self.page.label(algorithm)?),
             x: Axis::logarithmic("points tested at most", x),
             // Space for the legend above the curves.
             y: Axis::logarithmic(label, y.start..y.end * 10.0),
@@ -208,11 +193,6 @@ impl Presentation<'_> {
             reference_lines: Vec::new(),
             reference_label: String::new(),
         };
-        let stem = format!("{what}_{algorithm}");
-        figure.write(self.folder, &stem)?;
-        Ok(Block::Figure(FigureLink {
-            file: format!("{stem}.svg"),
-            caption: title,
-        }))
+        self.page.figure(&format!("{what}_{algorithm}"), &figure)
     }
 }
