@@ -1,4 +1,4 @@
-//! `reproduce`: fetches, runs, reports and checks every experiment.
+//! `reproduce`: fetches the models, runs, reports and checks the experiments.
 
 use std::path::Path;
 
@@ -7,15 +7,20 @@ use crate::cli::{check, fetch, report, run};
 use crate::error::Error;
 use crate::harness::run::Selection;
 
-/// Does everything in turn and returns all failures. While jobs of other shards are missing there
-/// is no report.
+/// Does all this in turn, for the experiments that are to be reproduced, and returns all failures.
+/// While jobs of other shards are missing there is no report.
 pub(super) fn reproduce(
     project: &Project,
     selection: Selection<'_>,
     splice_path: Option<&Path>,
 ) -> Result<Vec<String>, Error> {
     fetch::fetch(project, &[])?;
-    let names = project.names()?;
+    let mut names = Vec::new();
+    for name in project.names()? {
+        if project.file(&name)?.reproduced {
+            names.push(name);
+        }
+    }
     let runs = run::run(project, &names, selection, None)?;
     let mut failures = runs.failures;
     if runs.missing > 0 {

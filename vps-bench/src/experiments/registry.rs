@@ -29,6 +29,9 @@ macro_rules! registry {
             pub(crate) question: String,
             /// How it could mislead.
             pub(crate) misleads: String,
+            /// Whether `reproduce` runs it.
+            #[serde(default = "yes")]
+            pub(crate) reproduced: bool,
             $(
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 $kind: Option<$kind::Settings>,
@@ -61,6 +64,10 @@ registry!(
     scaling,
     structures,
 );
+
+fn yes() -> bool {
+    true
+}
 
 impl ExperimentFile {
     /// The settings a job depends on, as JSON: those of the kind without its planning keys.
