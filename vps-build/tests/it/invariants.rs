@@ -1,8 +1,7 @@
 //! Invariants of any mesh and any pose.
 
-use crate::support::{
-    asset, asset_of, bumpy_mesh, cases, density, direction, encoding, exact_penetration, vector,
-};
+use crate::brute_force::exact_penetration;
+use crate::support::{asset, asset_of, bumpy_mesh, cases, density, direction, encoding, vector};
 use glamx::{BVec3, DVec3};
 use proptest::prelude::*;
 use vps_build::{

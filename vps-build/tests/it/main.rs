@@ -1,5 +1,6 @@
 //! Tests of the whole builder.
 
+mod brute_force;
 mod distances;
 mod files;
 mod invariants;

@@ -1,6 +1,7 @@
 //! Meshes that are not clean solids are repaired to the intended solid.
 
-use crate::support::{bumpy_mesh, exact_penetration};
+use crate::brute_force::exact_penetration;
+use crate::support::bumpy_mesh;
 use glamx::{DQuat, DVec3, EulerRot};
 use proptest::prelude::*;
 use vps_build::{
