@@ -3,4 +3,6 @@
 pub(super) mod inertia;
 pub(super) mod orientation;
 pub(super) mod power_law;
+pub(super) mod timed_build;
+pub(super) mod voxelmaps;
 pub(super) mod world;

@@ -1,14 +1,13 @@
 //! One build: its times, and the sizes of the asset.
 
-use std::cell::RefCell;
-use std::time::Instant;
-
 use serde::Serialize;
-use vps_build::{BuildOptions, ClosestPoints, PointCount, Stage, build};
+use vps_build::BuildOptions;
 use vps_core::{Asset, Cluster, encode};
 
-use super::{Settings, VOXELMAPS, clustering, vps};
+use super::{Settings, clustering, vps};
 use crate::experiments::experiment::Measurement;
+use crate::experiments::shared::timed_build::timed_build;
+use crate::experiments::shared::voxelmaps::VOXELMAPS;
 use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::harness::prepare::Preparation;
@@ -54,36 +53,14 @@ pub(super) fn run(
     let whole = vps(&context.algorithms, &job.algorithm)?.build_options();
     let map = VOXELMAPS.iter().find(|(case, _)| *case == job.case);
     let options = match (map, clustering(&job.case, job.seed)) {
-        (Some((_, map)), _) => BuildOptions {
-            encoding: map.encoding,
-            density: map.density,
-            closest_points: if map.is_by_descent {
-                ClosestPoints::GradientDescent
-            } else {
-                ClosestPoints::Exact
-            },
-            // Only the map is measured.
-            points: PointCount::About(1),
-            ..whole
-        },
+        (Some((_, map)), _) => map.options(whole),
         (None, Some(clustering)) => BuildOptions {
             clustering,
             ..whole
         },
         (None, None) => return Err(format!("no case `{}`", job.case)),
     };
-    let begun: RefCell<Vec<(Stage, Instant)>> = RefCell::default();
-    let built = build(&body.mesh, &options, &|stage| {
-        begun.borrow_mut().push((stage, Instant::now()));
-    });
-    let end = Instant::now();
-    let asset = built.map_err(|e| e.to_string())?.asset;
-    let begun = begun.into_inner();
-    let seconds = |stage: Stage| {
-        let at = begun.iter().position(|(s, _)| *s == stage);
-        let next = |at: usize| begun.get(at + 1).map_or(end, |(_, next)| *next);
-        at.map_or(0.0, |at| (next(at) - begun[at].1).as_secs_f64())
-    };
+    let (asset, times) = timed_build(&body.mesh, &options)?;
     let [voxels_x, voxels_y, voxels_z] = asset.voxelmap.grid().dims();
     let store = asset.voxelmap.store();
     let error_bounds = asset.voxelmap.error_bounds();
@@ -99,13 +76,13 @@ pub(super) fn run(
         far_error_m: error_bounds.beyond,
         points: asset.tree.point_count(),
         levels: asset.tree.level_count(),
-        voxels_s: seconds(Stage::Voxels),
-        distances_s: seconds(Stage::Distances),
-        points_s: seconds(Stage::Points),
-        tree_s: seconds(Stage::Tree),
+        voxels_s: times.voxels_s,
+        distances_s: times.distances_s,
+        points_s: times.points_s,
+        tree_s: times.tree_s,
         ..Row::default()
     };
-    let build_s = row.voxels_s + row.distances_s + row.points_s + row.tree_s;
+    let build_s = times.total_s();
     let preparation = Preparation {
         prepare_s: build_s,
         asset_build_s: Some(build_s),

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
-use vps_build::{Clustering, Density, Encoding};
+use vps_build::Clustering;
 use vps_compare::{Algorithm, Vps};
 
 use crate::config::algorithms::Algorithms;
@@ -19,6 +19,7 @@ use crate::data::tables::Tables;
 use crate::error::Error;
 use crate::experiments::drop;
 use crate::experiments::experiment::{Experiment, Measurement};
+use crate::experiments::shared::voxelmaps::VOXELMAPS;
 use crate::harness::context::Context;
 use crate::harness::job::Job;
 use crate::report::document::Block;
@@ -54,56 +55,8 @@ pub(crate) struct Settings {
     fall: drop::Settings,
 }
 
-/// Cases of voxelmaps: encoding and density.
-const VOXELMAPS: [(&str, Map); 8] = [
-    (
-        "distances_sparse",
-        Map::new(Encoding::Distances(None), Density::Sparse),
-    ),
-    (
-        "distances_dense",
-        Map::new(Encoding::Distances(None), Density::Dense),
-    ),
-    ("floats_sparse", Map::new(Encoding::Floats, Density::Sparse)),
-    ("floats_dense", Map::new(Encoding::Floats, Density::Dense)),
-    ("layers_sparse", Map::new(Encoding::Layers, Density::Sparse)),
-    ("layers_dense", Map::new(Encoding::Layers, Density::Dense)),
-    ("descent_sparse", Map::by_descent(Density::Sparse)),
-    ("descent_dense", Map::by_descent(Density::Dense)),
-];
-
 /// Cases of pointshells by clustering; the seed of `bottom_up` is the number of the build.
 const SHELLS: [&str; 2] = ["bisect", "bottom_up"];
-
-#[derive(Clone, Copy, Debug)]
-struct Map {
-    encoding: Encoding,
-    density: Density,
-    is_by_descent: bool,
-}
-
-impl Map {
-    const fn new(encoding: Encoding, density: Density) -> Self {
-        Self {
-            encoding,
-            density,
-            is_by_descent: false,
-        }
-    }
-
-    /// Whether every voxel has an exact distance to all triangles, which takes as long as
-    /// everything else together.
-    fn is_slow(&self) -> bool {
-        self.density == Density::Dense && self.encoding != Encoding::Layers && !self.is_by_descent
-    }
-
-    const fn by_descent(density: Density) -> Self {
-        Self {
-            is_by_descent: true,
-            ..Self::new(Encoding::Distances(None), density)
-        }
-    }
-}
 
 fn clustering(case: &str, seed: u32) -> Option<Clustering> {
     match case {

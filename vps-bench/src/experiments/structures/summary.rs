@@ -2,9 +2,10 @@
 
 use polars::prelude::*;
 
-use super::{SHELLS, VOXELMAPS};
+use super::SHELLS;
 use crate::data::tables::Tables;
 use crate::error::Error;
+use crate::experiments::shared::voxelmaps::VOXELMAPS;
 
 /// `voxelmaps`: a row for each encoding and density. `pointshells`: a row for each shell and
 /// clustering. `levels`: a row for each of their levels. Times are medians of all builds.
