@@ -81,10 +81,6 @@ haptics seconds="10" with="": fetch
     cargo build --locked --release -p vps-compare --example haptic_loop
     {{ with }} target/release/examples/haptic_loop --seconds {{ seconds }}
 
-# What bodies do in rapier worlds, beside parry's meshes and convex parts, into reports/behaviour
-behaviour-report: fetch
-    cargo run --locked --release --quiet -p vps-compare --example behaviour
-
 # Random bytes for the readers and the builder, for the given seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build
     for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done

@@ -2,6 +2,7 @@
 //! one job to rows, summarizes rows in tables, and presents the tables in the report.
 
 pub(crate) mod accuracy;
+pub(crate) mod behaviour;
 pub(crate) mod bounce;
 pub(crate) mod drop;
 pub(crate) mod experiment;

@@ -8,7 +8,8 @@ use crate::config::toml_file::{ConfigError, read_toml};
 use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
-    accuracy, bounce, drop, replay, scaling, stack, structures, time_critical,
+    accuracy, behaviour, bounce, drop, replay, scaling, stack, structures,
+    time_critical,
 };
 use crate::report::claims::Claim;
 
@@ -63,6 +64,7 @@ registry!(
     accuracy,
     scaling,
     structures,
+    behaviour,
 );
 
 fn yes() -> bool {

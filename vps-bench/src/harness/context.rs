@@ -1,9 +1,11 @@
 //! The context of jobs: models, assets and prepared algorithms, each loaded or made once.
 
+use std::any::{Any, TypeId};
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use vps_build::{AssetCache, Mesh, mass_properties, read_mesh};
 use vps_compare::oracle::PlaneOracle;
@@ -22,6 +24,7 @@ pub(crate) struct Context {
     pub(crate) assets: AssetCache,
     bodies: RefCell<BTreeMap<String, Rc<Body>>>,
     prepared: RefCell<BTreeMap<String, Rc<PreparedAlgorithm>>>,
+    shared: RefCell<BTreeMap<(TypeId, String), Arc<dyn Any + Send + Sync>>>,
 }
 
 /// A model in metres.
@@ -42,7 +45,25 @@ impl Context {
             assets,
             bodies: RefCell::default(),
             prepared: RefCell::default(),
+            shared: RefCell::default(),
         }
+    }
+
+    /// A value that several jobs share, made by the first of them; `key` distinguishes values of one
+    /// type.
+    pub(crate) fn once<T: Send + Sync + 'static>(
+        &self,
+        key: &str,
+        make: impl FnOnce() -> Result<T, String>,
+    ) -> Result<Arc<T>, String> {
+        let key = (TypeId::of::<T>(), key.to_owned());
+        let shared = self.shared.borrow().get(&key).cloned();
+        if let Some(value) = shared.and_then(|value| value.downcast().ok()) {
+            return Ok(value);
+        }
+        let value = Arc::new(make()?);
+        self.shared.borrow_mut().insert(key, value.clone());
+        Ok(value)
     }
 
     /// Loads a model by its name in `models.toml` or the path of a mesh; a unit is `scale` metres

@@ -1,6 +1,7 @@
 //! The command as its users meet it: small runs of a box that falls, and everything that can be
 //! wrong.
 
+mod behaviour;
 mod compare;
 mod fetch;
 mod project;

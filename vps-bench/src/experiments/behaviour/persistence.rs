@@ -1,23 +1,23 @@
-//! How many contacts an engine knows again from one step to the next.
+//! How many contacts persist from one step to the next.
 
 use std::collections::HashSet;
 
 use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
-/// Counts, step by step, the contacts that bear something and those of them whose impulse was handed
-/// on from the step before.
+/// Counts, step by step, the contacts with an impulse, and those of them that were warm started: the
+/// solver began with their impulse of the step before.
 #[derive(Default)]
-pub(crate) struct Kept {
-    /// Pairs with contacts that bore something in the step before.
+pub(super) struct Persistence {
+    /// Pairs with an impulse in the step before.
     before: HashSet<[ColliderHandle; 2]>,
     bearing: u64,
-    handed_on: u64,
+    warm_started: u64,
 }
 
-impl Kept {
-    /// Counts what the solver was given in the last step.
-    pub(crate) fn follow(&mut self, world: &PhysicsWorld) {
+impl Persistence {
+    /// Counts the contacts the solver was given in the last step.
+    pub(super) fn follow(&mut self, world: &PhysicsWorld) {
         let mut now = HashSet::new();
         for pair in world.contact_pairs() {
             let handles = [pair.collider1, pair.collider2];
@@ -32,7 +32,7 @@ impl Kept {
                     if was_bearing {
                         let is_new = contact.contact_id[0] & NEW_CONTACT_BIT != 0;
                         self.bearing += 1;
-                        self.handed_on += u64::from(!is_new);
+                        self.warm_started += u64::from(!is_new);
                     }
                 }
             }
@@ -40,8 +40,9 @@ impl Kept {
         self.before = now;
     }
 
-    /// The share of contacts that began with an impulse of the step before; `None` of none.
-    pub(crate) fn share(&self) -> Option<f64> {
-        (self.bearing > 0).then(|| self.handed_on as f64 / self.bearing as f64)
+    /// The percentage of contacts that were warm started, of pairs with an impulse in the step
+    /// before; `None` if there were none.
+    pub(super) fn percent(&self) -> Option<f64> {
+        (self.bearing > 0).then(|| 100.0 * self.warm_started as f64 / self.bearing as f64)
     }
 }

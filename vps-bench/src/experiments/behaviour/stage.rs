@@ -7,69 +7,68 @@ use rapier3d::prelude::*;
 use vps_core::{Body, BodyPair, Query, Shells};
 use vps_rapier::{Manifolds, VpsDispatcher};
 
-use crate::kept::Kept;
-use crate::models::{Kind, Model, SEGMENTS_LEVEL};
-use crate::setup::Setup;
+use super::collider::Collider;
+use super::models::{Model, ModelName};
+use super::persistence::Persistence;
+use super::setup::Setup;
 
 /// Friction and restitution of all bodies of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Material {
-    pub(crate) friction: f32,
-    pub(crate) restitution: f32,
+pub(super) struct Material {
+    pub(super) friction: f32,
+    pub(super) restitution: f32,
 }
 
-/// What most scenes are made of.
-pub(crate) const PLAIN: Material = Material {
+/// The material of most scenes.
+pub(super) const PLAIN: Material = Material {
     friction: 0.5,
     restitution: 0.0,
 };
 
-/// How often it is looked how deep bodies are, in steps.
+/// Steps between two measurements of how deep bodies are.
 const LOOK_EVERY: u32 = 5;
 
-/// A world of bodies that all collide as one kind.
-pub(crate) struct Stage {
-    pub(crate) world: PhysicsWorld,
-    pub(crate) setup: Setup,
+/// A world of bodies that all collide as one kind of shape.
+pub(super) struct Stage<'s> {
+    pub(super) world: PhysicsWorld,
+    setup: &'s Setup,
     material: Material,
-    bodies: Vec<(RigidBodyHandle, &'static Model)>,
+    bodies: Vec<(RigidBodyHandle, &'s Model)>,
     boxes: Vec<(Pose, vps_core::Cuboid)>,
     /// Steps made.
-    pub(crate) steps: u32,
-    /// Whether all steps that were asked for were made.
-    pub(crate) is_complete: bool,
+    pub(super) steps: u32,
+    /// Whether all requested steps were made.
+    pub(super) is_complete: bool,
     stepping: Duration,
     limit: Duration,
     /// The deepest any body has been in another, in metres.
-    pub(crate) deepest_m: f32,
-    /// How many contacts were known again.
-    pub(crate) kept: Kept,
+    pub(super) deepest_m: f32,
+    pub(super) persistence: Persistence,
 }
 
 /// How still bodies are that should be at rest.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rest {
-    /// How far the centre of a body got, at most, in metres.
-    pub(crate) drift_m: f32,
-    /// The highest speed of any part of a body, at most, in m/s.
-    pub(crate) speed_m_s: f32,
+pub(super) struct Rest {
+    /// The largest displacement of a centre in metres.
+    pub(super) drift_m: f32,
+    /// The highest speed of any part of a body, bounded from above, in m/s.
+    pub(super) speed_m_s: f32,
     /// The highest kinetic energy of all bodies together in J.
-    pub(crate) energy_j: f32,
-    /// How deep any was in another still, in metres.
-    pub(crate) deepest_m: f32,
+    pub(super) energy_j: f32,
+    /// The depth of the deepest at the end, in metres.
+    pub(super) deepest_m: f32,
 }
 
-impl Stage {
+impl<'s> Stage<'s> {
     /// An empty world; y is up.
-    pub(crate) fn new(setup: Setup, frequency_hz: f32, material: Material) -> Self {
-        let kind = setup.kind;
+    pub(super) fn new(setup: &'s Setup, frequency_hz: f32, material: Material) -> Self {
         let mut world = PhysicsWorld::default();
-        if kind.is_vps() {
+        if setup.collider.is_vps() {
             world.narrow_phase = vps_rapier::narrow_phase();
         }
-        if kind == Kind::VpsSegments {
+        if setup.collider == Collider::VpsSegments {
             let dispatcher = VpsDispatcher {
-                manifolds: Manifolds::Segments(SEGMENTS_LEVEL),
+                manifolds: Manifolds::Segments(setup.segments_level),
                 ..VpsDispatcher::default()
             };
             let dispatcher = dispatcher.chain(DefaultQueryDispatcher);
@@ -79,7 +78,7 @@ impl Stage {
         }
         let parameters = &mut world.integration_parameters;
         parameters.dt = 1.0 / frequency_hz;
-        setup.recycling.set(parameters);
+        setup.set_recycling(parameters);
         Self {
             world,
             setup,
@@ -91,12 +90,12 @@ impl Stage {
             stepping: Duration::ZERO,
             limit: Duration::from_secs(12),
             deepest_m: 0.0,
-            kept: Kept::default(),
+            persistence: Persistence::default(),
         }
     }
 
-    /// Stops stepping after so many seconds of it.
-    pub(crate) fn with_limit(self, seconds: u64) -> Self {
+    /// Stops after this time spent on steps.
+    pub(super) fn with_limit(self, seconds: u64) -> Self {
         Self {
             limit: Duration::from_secs(seconds),
             ..self
@@ -104,9 +103,9 @@ impl Stage {
     }
 
     /// A fixed box with these edges in metres.
-    pub(crate) fn add_box(&mut self, extents: [f32; 3], pose: Pose) {
+    pub(super) fn add_box(&mut self, extents: [f32; 3], pose: Pose) {
         let [x, y, z] = extents.map(|e| 0.5 * e);
-        let collider = self.collider(SharedShape::cuboid(x, y, z));
+        let collider = self.collider_builder(SharedShape::cuboid(x, y, z));
         self.world
             .insert(RigidBodyBuilder::fixed().pose(pose), collider);
         self.boxes
@@ -114,12 +113,20 @@ impl Stage {
     }
 
     /// A box 0.2 m thick with its upper side at height 0.
-    pub(crate) fn add_ground(&mut self) {
+    pub(super) fn add_ground(&mut self) {
         self.add_box([4.0, 0.2, 4.0], Pose::translation(0.0, -0.1, 0.0));
     }
 
     /// A body, its mass that of the solid whatever it collides as.
-    pub(crate) fn add(&mut self, model: &'static Model, body: RigidBodyBuilder) -> RigidBodyHandle {
+    ///
+    /// # Errors
+    /// When the model or its shape cannot be made.
+    pub(super) fn add(
+        &mut self,
+        name: ModelName,
+        body: RigidBodyBuilder,
+    ) -> Result<RigidBodyHandle, String> {
+        let model = self.setup.model(name)?;
         let mut body = body
             .additional_mass_properties(model.mass())
             .can_sleep(false)
@@ -132,31 +139,31 @@ impl Stage {
             );
             body.set_position(start, false);
         }
-        let collider = self.collider(model.shape(self.setup.kind));
+        let collider = self.collider_builder(model.shape(self.setup.collider)?);
         let (handle, _) = self.world.insert(body, collider);
         self.bodies.push((handle, model));
-        handle
+        Ok(handle)
     }
 
-    fn collider(&self, shape: SharedShape) -> ColliderBuilder {
+    fn collider_builder(&self, shape: SharedShape) -> ColliderBuilder {
         ColliderBuilder::new(shape)
             .density(0.0)
             .friction(self.material.friction)
             .restitution(self.material.restitution)
     }
 
-    pub(crate) fn body(&self, handle: RigidBodyHandle) -> &RigidBody {
+    pub(super) fn body(&self, handle: RigidBodyHandle) -> &RigidBody {
         &self.world.bodies[handle]
     }
 
     /// Frequency of steps in Hz.
-    pub(crate) fn frequency_hz(&self) -> f32 {
+    pub(super) fn frequency_hz(&self) -> f32 {
         1.0 / self.world.integration_parameters.dt
     }
 
-    /// Steps for so many seconds or until `is_over` of what is after a step; `false` if time ran
-    /// out before or a body left all bounds.
-    pub(crate) fn run(&mut self, seconds: f32, mut is_over: impl FnMut(&Self) -> bool) -> bool {
+    /// Steps for a time in seconds, or until `is_over` after a step; `false` if the limit was reached
+    /// before, or a body left all bounds.
+    pub(super) fn run(&mut self, seconds: f32, mut is_over: impl FnMut(&Self) -> bool) -> bool {
         let steps = (seconds * self.frequency_hz()).round() as u32;
         for _ in 0..steps {
             if self.stepping >= self.limit || !self.is_sound() {
@@ -167,7 +174,7 @@ impl Stage {
             self.world.step();
             self.stepping += start.elapsed();
             self.steps += 1;
-            self.kept.follow(&self.world);
+            self.persistence.follow(&self.world);
             if self.steps.is_multiple_of(LOOK_EVERY) {
                 self.deepest_m = self.deepest_m.max(self.depth());
             }
@@ -178,13 +185,13 @@ impl Stage {
         true
     }
 
-    /// Steps for so many seconds.
-    pub(crate) fn go(&mut self, seconds: f32) -> bool {
+    /// Steps for a time in seconds.
+    pub(super) fn go(&mut self, seconds: f32) -> bool {
         self.run(seconds, |_| false)
     }
 
-    /// Steps for so many seconds in which bodies should be at rest.
-    pub(crate) fn watch(&mut self, seconds: f32) -> Option<Rest> {
+    /// Steps for a time in seconds in which bodies should be at rest; `None` if the limit was reached.
+    pub(super) fn watch(&mut self, seconds: f32) -> Option<Rest> {
         let before = self.centers();
         let mut rest = Rest::default();
         let is_complete = self.run(seconds, |stage| {
@@ -201,17 +208,17 @@ impl Stage {
     }
 
     /// Mean speed of all steps in steps a second.
-    pub(crate) fn steps_per_s(&self) -> f64 {
+    pub(super) fn steps_per_s(&self) -> f64 {
         f64::from(self.steps) / self.stepping.as_secs_f64()
     }
 
     /// Time taken by steps.
-    pub(crate) fn stepping_s(&self) -> f64 {
+    pub(super) fn stepping_s(&self) -> f64 {
         self.stepping.as_secs_f64()
     }
 
     /// All bodies that are models.
-    pub(crate) fn models(&self) -> impl Iterator<Item = (&RigidBody, &'static Model)> {
+    pub(super) fn models(&self) -> impl Iterator<Item = (&RigidBody, &'s Model)> {
         self.bodies
             .iter()
             .map(|&(handle, model)| (&self.world.bodies[handle], model))
@@ -227,8 +234,8 @@ impl Stage {
             .collect()
     }
 
-    /// What no part of any body is faster than, in m/s.
-    pub(crate) fn speed(&self) -> f32 {
+    /// A bound on the speed of all parts of all bodies in m/s.
+    pub(super) fn speed(&self) -> f32 {
         self.models()
             .map(|(body, model)| body.linvel().length() + body.angvel().length() * model.reach())
             .fold(0.0, f32::max)
@@ -240,7 +247,7 @@ impl Stage {
 
     /// How deep the deepest point of a body is in another, in metres; 0 if all are apart. By shells
     /// and voxelmaps of all bodies, whatever they collide as.
-    pub(crate) fn depth(&self) -> f32 {
+    pub(super) fn depth(&self) -> f32 {
         let bodies: Vec<_> = self.models().collect();
         let mut deepest = 0.0_f32;
         for (i, (a, model_a)) in bodies.iter().enumerate() {

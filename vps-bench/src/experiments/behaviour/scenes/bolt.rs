@@ -1,31 +1,28 @@
+//! A bolt 0.3 m long stands fixed, and its nut, without friction, screws itself down by its weight.
+
 use std::f64::consts::TAU;
 
 use rapier3d::prelude::*;
 use vps_build::models::Thread;
 
 use super::{Turned, upright};
-use crate::models::{BOLT, NUT, SCREW_SCALE};
-use crate::record::{Finding, Row};
-use crate::setup::Setup;
-use crate::stage::{Material, Stage};
+use crate::experiments::behaviour::models::{ModelName, SCREW_SCALE};
+use crate::experiments::behaviour::record::Record;
+use crate::experiments::behaviour::setup::Setup;
+use crate::experiments::behaviour::stage::{Material, Stage};
 
-pub(super) const ABOUT: &str = "\
-A bolt 0.3 m long stands fixed, and its nut, without friction, screws itself down by its weight:
-2.4 mm of room, three turns at most. It must turn more than once and, after the first quarter, go
-down by the pitch of 45 mm a turn, to within 3 %.";
-
-pub(super) fn play(setup: Setup) -> Row {
+pub(super) fn play(setup: &Setup) -> Result<Record, String> {
     let material = Material {
         friction: 0.0,
         restitution: 0.0,
     };
     let mut stage = Stage::new(setup, 60.0, material).with_limit(30);
     let standing = Pose::from_parts(Vector::ZERO, upright());
-    stage.add(&BOLT, RigidBodyBuilder::fixed().pose(standing));
+    stage.add(ModelName::Bolt, RigidBodyBuilder::fixed().pose(standing))?;
     let pitch = Thread::default().pitch as f32 * SCREW_SCALE;
     // Two turns up, it fits as it is.
     let start = Pose::from_parts(Vector::Y * (2.0 * pitch), upright());
-    let nut = stage.add(&NUT, RigidBodyBuilder::dynamic().pose(start));
+    let nut = stage.add(ModelName::Nut, RigidBodyBuilder::dynamic().pose(start))?;
     let mut turned = Turned::from(Rotation::IDENTITY);
     // Turns and height when the room between the threads is taken up.
     let mut from = None;
@@ -42,11 +39,8 @@ pub(super) fn play(setup: Setup) -> Row {
         let turns = (angle - turned.total) / TAU;
         100.0 * (f64::from((height - end) / pitch) / turns - 1.0)
     });
-    let finding = Finding {
-        what: "way a turn, off by %",
-        value: off,
-        digits: 2,
-        is_good: off.is_some_and(|o| o.abs() < 3.0) && turned.total < -TAU,
-    };
-    Row::new("bolt in nut", &stage, None, finding)
+    let record = Record::of(&stage)
+        .with("pitch_off_percent", off)
+        .with("turns", -turned.total / TAU);
+    Ok(record)
 }

@@ -1,19 +1,16 @@
+//! A motor turns a gear of 16 teeth at 3 rad/s, which drives one of 12 on a braking axle.
+
 use std::f32::consts::{PI, TAU};
 
 use rapier3d::prelude::*;
 
 use super::Turned;
-use crate::models::{GEAR, GEAR_SCALE, SMALL_GEAR};
-use crate::record::{Finding, Row};
-use crate::setup::Setup;
-use crate::stage::{Material, Stage};
+use crate::experiments::behaviour::models::{GEAR_SCALE, ModelName};
+use crate::experiments::behaviour::record::Record;
+use crate::experiments::behaviour::setup::Setup;
+use crate::experiments::behaviour::stage::{Material, Stage};
 
-pub(super) const ABOUT: &str = "\
-A motor turns a gear wheel of 16 teeth at 3 rad/s, which drives one of 12 on an axle that brakes. In
-5 s the driven one must turn 16 / 12 times as far, to within 2 % (the play of the teeth is less), and
-the motor must not jam.";
-
-pub(super) fn play(setup: Setup) -> Row {
+pub(super) fn play(setup: &Setup) -> Result<Record, String> {
     let material = Material {
         friction: 0.2,
         restitution: 0.0,
@@ -25,15 +22,15 @@ pub(super) fn play(setup: Setup) -> Row {
     let tooth_to_x = Rotation::from_rotation_z(-0.25 * TAU / 16.0);
     let gap_to_minus_x = Rotation::from_rotation_z(PI - 0.75 * TAU / 12.0);
     let driving = stage.add(
-        &GEAR,
+        ModelName::Gear,
         RigidBodyBuilder::dynamic().pose(Pose::from_parts(Vector::ZERO, tooth_to_x)),
-    );
+    )?;
     let driven = stage.add(
-        &SMALL_GEAR,
+        ModelName::SmallGear,
         RigidBodyBuilder::dynamic()
             .pose(Pose::from_parts(Vector::X * distance, gap_to_minus_x))
             .angular_damping(1.0),
-    );
+    )?;
     let axles = stage.world.insert_body(RigidBodyBuilder::fixed());
     let axle = |x: f32| RevoluteJointBuilder::new(Vector::Z).local_anchor1(Vector::X * x);
     let motor = axle(0.0).motor_velocity(3.0, 1e3);
@@ -41,7 +38,7 @@ pub(super) fn play(setup: Setup) -> Row {
     stage
         .world
         .insert_impulse_joint(axles, driven, axle(distance));
-    let rotation = |stage: &Stage, gear| stage.body(gear).position().rotation;
+    let rotation = |stage: &Stage<'_>, gear| stage.body(gear).position().rotation;
     // Until the teeth touch.
     stage.go(0.5);
     let [mut first, mut second] =
@@ -53,11 +50,8 @@ pub(super) fn play(setup: Setup) -> Row {
     });
     let ratio = -second.total / first.total;
     let off = 100.0 * (ratio * 12.0 / 16.0 - 1.0);
-    let finding = Finding {
-        what: "ratio off by %",
-        value: is_complete.then_some(off),
-        digits: 2,
-        is_good: off.abs() < 2.0 && first.total > 10.0,
-    };
-    Row::new("gear on gear", &stage, None, finding)
+    let record = Record::of(&stage)
+        .with("ratio_off_percent", is_complete.then_some(off))
+        .with("turned_rad", first.total);
+    Ok(record)
 }
