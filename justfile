@@ -76,11 +76,6 @@ query-profile: fetch
 gate: fetch
     cargo run --locked --release --quiet -p vps-compare --example query_profile -- gate
 
-# The 1 kHz loop for 10 seconds in two scenes, into reports/haptics; with real-time priority by `just haptics 10 "chrt -f 50"`
-haptics seconds="10" with="": fetch
-    cargo build --locked --release -p vps-compare --example haptic_loop
-    {{ with }} target/release/examples/haptic_loop --seconds {{ seconds }}
-
 # Random bytes for the readers and the builder, for the given seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build
     for seed in dense sparse; do target/release/vps-build build fuzz/seeds/obj/tetrahedron.obj -q --voxels 12 --points 40 --store $seed -o fuzz/corpus/asset/$seed.vps; done

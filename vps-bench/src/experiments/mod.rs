@@ -6,6 +6,7 @@ pub(crate) mod behaviour;
 pub(crate) mod bounce;
 pub(crate) mod drop;
 pub(crate) mod experiment;
+pub(crate) mod haptics;
 pub(crate) mod registry;
 pub(crate) mod replay;
 pub(crate) mod scaling;

@@ -8,7 +8,7 @@ use crate::config::toml_file::{ConfigError, read_toml};
 use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
-    accuracy, behaviour, bounce, drop, replay, scaling, stack, structures,
+    accuracy, behaviour, bounce, drop, haptics, replay, scaling, stack, structures,
     time_critical,
 };
 use crate::report::claims::Claim;
@@ -65,6 +65,7 @@ registry!(
     scaling,
     structures,
     behaviour,
+    haptics,
 );
 
 fn yes() -> bool {

@@ -17,6 +17,12 @@ pub(crate) struct Environment {
     /// The core the run was pinned to, if it was.
     #[serde(default)]
     pub(crate) core: Option<usize>,
+    /// The scheduling of this thread, such as `real time`; empty if it is unknown.
+    #[serde(default)]
+    pub(crate) scheduling: String,
+    /// Threads that ran or were ready to run in the minute before, on average.
+    #[serde(default)]
+    pub(crate) load_average: Option<f64>,
     pub(crate) memory_mib: u64,
     pub(crate) system: String,
     pub(crate) kernel: String,
@@ -87,6 +93,8 @@ impl Environment {
             processor: processor.unwrap_or_else(unknown),
             logical_cores,
             core,
+            scheduling: scheduling().into(),
+            load_average: sysinfo::System::load_average().ok().map(|load| load.one),
             memory_mib,
             system: sysinfo::System::long_os_version().unwrap_or_else(|_| unknown()),
             kernel: sysinfo::System::kernel_version().unwrap_or_else(|_| unknown()),
@@ -101,6 +109,18 @@ impl Environment {
             timer_overhead_ns: Stopwatch::overhead_ns(),
             program: program(),
         }
+    }
+}
+
+/// The scheduling of this thread, where Linux tells it.
+fn scheduling() -> &'static str {
+    let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+    // The 41st field of proc_pid_stat(5): the 39th behind the name, which ends with a bracket.
+    let (_, fields) = stat.rsplit_once(')').unwrap_or_default();
+    match fields.split_whitespace().nth(38) {
+        Some("0") => "ordinary",
+        Some("1" | "2") => "real time",
+        _ => "",
     }
 }
 

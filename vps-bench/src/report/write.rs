@@ -140,7 +140,7 @@ fn made_with(results: &Results) -> Vec<String> {
         Some(core) => format!("kept on core {core}"),
         None => "kept on no core".into(),
     };
-    vec![
+    let mut lines = vec![
         format!(
             "{}, {} logical cores, {core}, {} MiB, {} (kernel {})",
             environment.processor,
@@ -157,5 +157,12 @@ fn made_with(results: &Results) -> Vec<String> {
             "taking a time costs {} ns, which every time contains",
             environment.timer_overhead_ns
         ),
-    ]
+    ];
+    if let (false, Some(load)) = (environment.scheduling.is_empty(), environment.load_average) {
+        lines.push(format!(
+            "scheduling: {}; load average of the minute before: {load:.1}",
+            environment.scheduling
+        ));
+    }
+    lines
 }

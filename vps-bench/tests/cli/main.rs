@@ -4,6 +4,7 @@
 mod behaviour;
 mod compare;
 mod fetch;
+mod haptics;
 mod project;
 mod report;
 mod resume;
