@@ -60,10 +60,6 @@ no-std:
     cargo run --locked --quiet -p vps-build --example torus -- target/torus.vps
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
-# Speed, sizes and errors of the builder, into reports/builder
-builder-report: fetch
-    cargo run --locked --release --quiet -p vps-build --example builder_report
-
 # Speed of queries beside parry's, into reports/queries
 query-report: fetch
     cargo bench --locked -p vps-compare --bench queries

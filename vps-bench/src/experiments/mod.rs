@@ -4,6 +4,7 @@
 pub(crate) mod accuracy;
 pub(crate) mod behaviour;
 pub(crate) mod bounce;
+pub(crate) mod builder;
 pub(crate) mod drop;
 pub(crate) mod experiment;
 pub(crate) mod haptics;

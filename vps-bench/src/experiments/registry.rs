@@ -8,7 +8,7 @@ use crate::config::toml_file::{ConfigError, read_toml};
 use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
-    accuracy, behaviour, bounce, drop, haptics, replay, scaling, stack, structures,
+    accuracy, behaviour, bounce, builder, drop, haptics, replay, scaling, stack, structures,
     time_critical,
 };
 use crate::report::claims::Claim;
@@ -66,6 +66,7 @@ registry!(
     structures,
     behaviour,
     haptics,
+    builder,
 );
 
 fn yes() -> bool {

@@ -2,6 +2,7 @@
 //! wrong.
 
 mod behaviour;
+mod builder;
 mod compare;
 mod fetch;
 mod haptics;

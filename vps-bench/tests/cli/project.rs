@@ -89,6 +89,7 @@ expect = "holds"
 pub(crate) struct Project(pub(crate) PathBuf);
 
 /// The output of the command.
+#[derive(Debug)]
 pub(crate) struct Said {
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
