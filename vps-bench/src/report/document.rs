@@ -74,13 +74,3 @@ impl Table {
         line(&self.head) + &rule + &rows
     }
 }
-
-/// A report that another program made, in a folder beside those of the experiments.
-pub(crate) struct OtherReport {
-    pub(crate) title: String,
-    /// Path from the folder of the report.
-    pub(crate) file: String,
-}
-
-/// Heading of the list of other reports.
-pub(crate) const OTHER_REPORTS: &str = "Measured by itself";

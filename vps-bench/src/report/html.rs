@@ -7,19 +7,13 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::error::Error;
 use crate::report::claims::{Outcome, Verdict};
-use crate::report::document::{
-    Block, FigureLink, OTHER_REPORTS, OtherReport, QUICK, Section, Table,
-};
+use crate::report::document::{Block, FigureLink, QUICK, Section, Table};
 
 const STYLE: &str = include_str!("report.css");
 
-/// All sections, with a table of verdicts first and a list of other reports last; figures are read
-/// from `folder`, where the report will lie.
-pub(super) fn report(
-    sections: &[Section],
-    others: &[OtherReport],
-    folder: &Path,
-) -> Result<String, Error> {
+/// All sections, with a table of verdicts first; figures are read from `folder`, where the report will
+/// lie.
+pub(super) fn report(sections: &[Section], folder: &Path) -> Result<String, Error> {
     let mut parts = Vec::new();
     for section in sections {
         parts.push(self::section(section, folder)?);
@@ -52,7 +46,6 @@ pub(super) fn report(
                         @for section in sections {
                             li { a href={ "#" (section.name) } { (section.title) } }
                         }
-                        @if !others.is_empty() { li { a href="#others" { (OTHER_REPORTS) } } }
                     }
                 }
                 main {
@@ -63,16 +56,6 @@ pub(super) fn report(
                         }
                     }
                     @for part in &parts { (part) }
-                    @if !others.is_empty() {
-                        section id="others" {
-                            h2 { (OTHER_REPORTS) }
-                            ul {
-                                @for other in others {
-                                    li { a href=(other.file) { (other.title) } }
-                                }
-                            }
-                        }
-                    }
                 }
             }
         }

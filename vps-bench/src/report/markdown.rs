@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use crate::report::claims::Verdict;
-use crate::report::document::{Block, OTHER_REPORTS, OtherReport, QUICK, Section, Table};
+use crate::report::document::{Block, QUICK, Section, Table};
 
-/// All sections, with a table of verdicts first and a list of other reports last.
-pub(super) fn report(sections: &[Section], others: &[OtherReport]) -> String {
+/// All sections, with a table of verdicts first.
+pub(super) fn report(sections: &[Section]) -> String {
     let mut text = String::from("# Report\n");
     let all: Vec<_> = sections.iter().flat_map(|s| &s.verdicts).collect();
     if !all.is_empty() {
@@ -14,12 +14,6 @@ pub(super) fn report(sections: &[Section], others: &[OtherReport]) -> String {
     }
     for section in sections {
         let _ = write!(text, "\n{}", self::section(section));
-    }
-    if !others.is_empty() {
-        let _ = write!(text, "\n## {OTHER_REPORTS}\n\n");
-    }
-    for other in others {
-        let _ = writeln!(text, "* [{}]({})", other.title, other.file);
     }
     text
 }

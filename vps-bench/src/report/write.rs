@@ -7,7 +7,7 @@ use vps_build::write_atomically;
 use crate::config::algorithms::Algorithms;
 use crate::error::Error;
 use crate::experiments::registry::ExperimentFile;
-use crate::report::document::{Block, OtherReport, Section};
+use crate::report::document::{Block, Section};
 use crate::report::page::Page;
 use crate::report::results::Results;
 use crate::report::{html, markdown};
@@ -34,10 +34,9 @@ pub(crate) fn write(
         }
         sections.push(section(&results, file, algorithms, &folder)?);
     }
-    let others = other_reports(records)?;
-    let text = markdown::report(&sections, &others);
+    let text = markdown::report(&sections);
     write_atomically(&out.join(MARKDOWN), text.as_bytes())?;
-    let html = html::report(&sections, &others, out)?;
+    let html = html::report(&sections, out)?;
     write_atomically(&out.join(HTML), html.as_bytes())?;
     let first_table = |section: &Section| {
         let table = section.blocks.iter().find_map(|block| match block {
@@ -47,24 +46,6 @@ pub(crate) fn write(
         (section.name.clone(), table.unwrap_or_default())
     };
     Ok(sections.iter().map(first_table).collect())
-}
-
-/// The other reports, sorted by the names of their folders.
-fn other_reports(records: &Path) -> Result<Vec<OtherReport>, Error> {
-    let mut all = Vec::new();
-    for entry in std::fs::read_dir(records)? {
-        let file = format!("{}/README.md", entry?.file_name().to_string_lossy());
-        // Plain files and folders of experiments have none.
-        let Ok(text) = std::fs::read_to_string(records.join(&file)) else {
-            continue;
-        };
-        if let Some(title) = text.lines().find_map(|line| line.strip_prefix("# ")) {
-            let title = title.to_owned();
-            all.push(OtherReport { title, file });
-        }
-    }
-    all.sort_by(|a, b| a.file.cmp(&b.file));
-    Ok(all)
 }
 
 /// Copies the pictures that runs drew to another folder.
