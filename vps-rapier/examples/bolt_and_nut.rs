@@ -5,22 +5,23 @@ use std::error::Error;
 
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::vps_build::models::{self, Thread};
-use vps_rapier::{VpsShapeBuilder, narrow_phase};
+use vps_rapier::{VpsShapeBuilder, set_up};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (thread, scale) = (Thread::default(), 0.3);
     let pitch = (thread.pitch * scale) as f32;
     let bolt = models::bolt(thread, 1.0, 48).scaled(scale)?;
     let nut = models::nut(thread, 0.2, 0.008, 48).scaled(scale)?;
+    let across_flats = 3.6 * (thread.radius * scale) as f32;
 
-    let mut world = PhysicsWorld {
-        narrow_phase: narrow_phase(),
-        ..PhysicsWorld::default()
-    };
+    let mut world = PhysicsWorld::default();
+    set_up(
+        &mut world.narrow_phase,
+        &mut world.integration_parameters,
+        across_flats,
+    );
     // Their axis is z.
     world.gravity = -Vector::Z * 9.81;
-    // Small parts need small tolerances, above all for the motion below which rapier keeps contacts.
-    world.integration_parameters.length_unit = scale as f32 / 10.0;
     let smooth = |shape: VpsShapeBuilder| -> Result<ColliderBuilder, Box<dyn Error>> {
         Ok(ColliderBuilder::new(shape.build()?.into())
             .friction(0.0)

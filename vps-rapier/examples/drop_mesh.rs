@@ -6,7 +6,7 @@ use std::path::Path;
 
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::vps_build::models;
-use vps_rapier::{VpsShapeBuilder, narrow_phase};
+use vps_rapier::{VpsShapeBuilder, set_up};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let builder = match std::env::args().nth(1) {
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Built once, then read from the folder.
     let cache = std::env::temp_dir().join("vps-rapier-examples");
     let shape = builder.cached_in(&cache).build()?;
-    let size = shape.compute_local_bounding_sphere().radius;
+    let size = shape.compute_local_aabb().extents().max_element();
     println!(
         "{} points {:.4} m apart, {:.3} m³",
         shape.asset().tree.point_count(),
@@ -24,18 +24,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         shape.asset().mass.volume
     );
 
-    let mut world = PhysicsWorld {
-        narrow_phase: narrow_phase(),
-        ..PhysicsWorld::default()
-    };
-    // A world of small bodies needs small tolerances.
-    world.integration_parameters.length_unit = size;
-    let ground = ColliderBuilder::cuboid(20.0 * size, size, 20.0 * size);
+    let mut world = PhysicsWorld::default();
+    set_up(
+        &mut world.narrow_phase,
+        &mut world.integration_parameters,
+        size,
+    );
+    let ground = ColliderBuilder::cuboid(10.0 * size, 0.5 * size, 10.0 * size);
     world.insert(
-        RigidBodyBuilder::fixed().translation(-Vector::Y * size),
+        RigidBodyBuilder::fixed().translation(-0.5 * size * Vector::Y),
         ground,
     );
-    let above = RigidBodyBuilder::dynamic().translation(Vector::Y * 3.0 * size);
+    let above = RigidBodyBuilder::dynamic().translation(1.5 * size * Vector::Y);
     let (body, _) = world.insert(above, ColliderBuilder::new(shape.into()));
     for step in 0..=240 {
         if step % 30 == 0 {

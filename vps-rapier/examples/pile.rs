@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use vps_rapier::rapier3d::prelude::*;
 use vps_rapier::vps_build::{BuildOptions, PointCount, Resolution, models};
-use vps_rapier::{VpsShapeBuilder, narrow_phase};
+use vps_rapier::{VpsShapeBuilder, set_up};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let count: usize = match std::env::args().nth(1) {
@@ -20,10 +20,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             ..BuildOptions::default()
         })
         .build()?;
-    let mut world = PhysicsWorld {
-        narrow_phase: narrow_phase(),
-        ..PhysicsWorld::default()
-    };
+    let mut world = PhysicsWorld::default();
+    // A knot is a metre wide.
+    set_up(
+        &mut world.narrow_phase,
+        &mut world.integration_parameters,
+        1.0,
+    );
     // A bin of five boxes.
     let bin = world.bodies.insert(RigidBodyBuilder::fixed());
     let walls = [

@@ -17,7 +17,6 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::{Compound, Shape};
 
 use crate::compound::{as_compound_with_vps, update_parts};
-use crate::connection::set_connected;
 use crate::manifolds::update_manifolds;
 use crate::precision::{core_pose, core_real, real, vector};
 use crate::query::cast::cast;
@@ -26,6 +25,7 @@ use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
 use crate::query::shell_in_field::Sampling;
 use crate::reduce::Manifolds;
+use crate::warnings::set_connected;
 use crate::workspace::mark;
 
 /// Answers all queries about pairs with a [`VpsShape`](crate::VpsShape), also inside of a compound. All

@@ -2,16 +2,18 @@
 //! concave ones, as solid dynamic bodies (section 3 of Sagardia, Stouraitis and Lopes e Silva,
 //! 2014, where the engine was Bullet).
 //!
-//! Two things are needed: a [`VpsShape`] for a collider, and the [`VpsDispatcher`] in the world's
-//! narrow phase, chained to parry's own so that all other pairs collide as before:
+//! Two things are needed: a [`VpsShape`] for a collider, and a world [`set_up`] for it: with the
+//! [`VpsDispatcher`] in its narrow phase, chained to parry's own so that all other pairs collide as
+//! before, and with tolerances in proportion to the bodies.
 //!
 //! ```
 //! use rapier3d::prelude::*;
-//! use vps_rapier::{VpsShapeBuilder, narrow_phase};
+//! use vps_rapier::{VpsShapeBuilder, set_up};
 //!
 //! let (vertices, triangles) = Cuboid::new(Vector::splat(0.5)).to_trimesh();
 //! let shape = VpsShapeBuilder::from_triangles(&vertices, &triangles)?.build()?;
-//! let mut world = PhysicsWorld { narrow_phase: narrow_phase(), ..PhysicsWorld::default() };
+//! let mut world = PhysicsWorld::default();
+//! set_up(&mut world.narrow_phase, &mut world.integration_parameters, 1.0);
 //! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::cuboid(5.0, 0.1, 5.0));
 //! let above = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
 //! let (body, _) = world.insert(above, ColliderBuilder::new(shape.into()));
@@ -31,7 +33,8 @@
 
 // Rooms, each of which uses only those before it:
 // precision, shape (the asset as a shape), field (other shapes as distance fields), query (about a
-// pair), reduce (from all contacts to a few), manifolds and compound (the data of rapier), dispatcher.
+// pair), reduce (from all contacts to a few), manifolds and compound (the data of rapier), dispatcher,
+// set_up.
 #![forbid(unsafe_code)]
 
 #[cfg(all(feature = "f32", feature = "f64"))]
@@ -54,7 +57,6 @@ struct Readme;
 
 mod check;
 mod compound;
-mod connection;
 #[cfg(feature = "debug-render")]
 mod debug_render;
 mod dispatcher;
@@ -63,21 +65,21 @@ mod manifolds;
 mod precision;
 mod query;
 mod reduce;
+mod set_up;
 mod shape;
 #[cfg(feature = "serde")]
 mod snapshot;
+mod warnings;
 mod workspace;
 
-use rapier3d::geometry::NarrowPhase;
-use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-
-pub use check::{MissingDispatcher, check};
+pub use check::{WorldError, check};
 #[cfg(feature = "debug-render")]
 pub use debug_render::debug_render;
 pub use dispatcher::VpsDispatcher;
 pub use field::shape_field::ShapeField;
 pub use query::shell_in_field::Sampling;
 pub use reduce::Manifolds;
+pub use set_up::{narrow_phase, set_up};
 #[cfg(feature = "build")]
 pub use shape::builder::{PendingShape, ShapeError, VpsShapeBuilder};
 pub use shape::{Role, VpsShape};
@@ -85,9 +87,3 @@ pub use shape::{Role, VpsShape};
 pub use snapshot::Snapshot;
 #[cfg(feature = "serde")]
 pub use snapshot::shape_snapshot::ShapeSnapshot;
-
-/// A narrow phase with the default [`VpsDispatcher`] before parry's own. Without it VPS shapes collide
-/// with nothing, see [`check`].
-pub fn narrow_phase() -> NarrowPhase {
-    NarrowPhase::with_query_dispatcher(VpsDispatcher::default().chain(DefaultQueryDispatcher))
-}

@@ -8,6 +8,7 @@ use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
 use crate::reduce::persistence::{ContactKey, match_previous};
 use crate::reduce::{Manifolds, contacts, is_same_normal};
+use crate::warnings::warn_if_predicted_far;
 
 /// Finds the contacts of a pair up to `prediction` metres away and replaces its manifolds by them. The
 /// data an engine keeps stays with the ids of contacts, and with the index of manifolds.
@@ -24,6 +25,9 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     let approach = old
         .first()
         .map_or(Approach::Unknown, |first| approach(first, pos12));
+    if let Approach::Moved(motion) = approach {
+        warn_if_predicted_far(prediction, pair.size(), motion);
+    }
     let contacts = contacts(pair, pos12, prediction, approach, kind, &previous);
     let keys: Vec<_> = contacts.iter().map(ContactKey::of_contact).collect();
     let matched = match_previous(&keys, &old);

@@ -60,7 +60,12 @@ fn first_difference(mut world: PhysicsWorld, before: usize) -> Option<usize> {
     let text = serde_json::to_string(&Snapshot::of(&world)).unwrap();
     let read: Snapshot = serde_json::from_str(&text).unwrap();
     let mut second = read.restore().unwrap();
-    check(&second.narrow_phase, &second.colliders).unwrap();
+    check(
+        &second.narrow_phase,
+        &second.integration_parameters,
+        &second.colliders,
+    )
+    .unwrap();
     (0..200).find(|_| {
         world.step();
         second.step();

@@ -10,8 +10,8 @@ use rapier3d::parry::shape::{PolygonalFeatureMap, Shape, ShapeType, SharedShape,
 use vps_core::{Aabb, Asset, SurfaceMesh, Vec3};
 
 use self::thickness::thickness;
-use crate::connection::warn_if_disconnected;
 use crate::precision::{core_real, core_vector, real, vector};
+use crate::warnings::warn_if_disconnected;
 
 #[cfg(feature = "build")]
 pub(crate) mod builder;

@@ -6,7 +6,7 @@ use rapier3d::dynamics::{IslandManager, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
 use rapier3d::pipeline::CollisionPipeline;
 
-use crate::connection::without_warning;
+use crate::warnings::without_warnings;
 
 /// A compound with some of its parts replaced; the shape itself if it is not a compound.
 pub(super) fn replace_parts(
@@ -51,7 +51,7 @@ pub(super) fn exchange_shapes(
             unmarked.push(handle);
         }
     }
-    without_warning(|| {
+    without_warnings(|| {
         CollisionPipeline::new().step(
             0.0,
             &mut IslandManager::new(),
