@@ -2,11 +2,12 @@
 //! samples of its edges stand in for it: shapes smaller than the spacing of the shell's points, such as
 //! a small ball, a pin or the corner of a box, are found by them.
 
-use rapier3d::parry::shape::{PackedFeatureId, Shape};
+use rapier3d::parry::shape::Shape;
 use vps_core::{Aabb, DistanceField, Pose3, Trilinear, Vec3};
 
 use super::edges::{EdgeSample, Edges};
 use super::pair_contact::PairContact;
+use super::sample_id::Elements;
 use crate::shape::VpsShape;
 
 /// Largest distance between neighbouring samples, in voxels: the voxelmap shows little that is finer.
@@ -140,7 +141,7 @@ impl<'s> EdgeSampler<'s> {
             normals: [out_of_shape, -inward],
             shell_normal: None,
             shell_is_first: true,
-            ids: [PackedFeatureId::edge(sample.id), PackedFeatureId::UNKNOWN],
+            ids: sample.id.features(),
             penetration,
         };
         Some(if self.is_first {
@@ -191,6 +192,6 @@ impl<'s> EdgeSampler<'s> {
             max_opening: self.max_opening,
             min_width: self.min_width,
         };
-        edges.sample_shape(self.shape, 0, 0.0, visit);
+        edges.sample_shape(self.shape, Elements::ALL, 0.0, visit);
     }
 }
