@@ -7,7 +7,7 @@ use libfuzzer_sys::fuzz_target;
 use vps_build::{
     BuildOptions, ClosestPoints, Density, Encoding, Mesh, PointCount, Resolution, Sign, build,
 };
-use vps_core::{Asset, encode};
+use vps_core::Asset;
 
 fuzz_target!(|bytes: &[u8]| {
     let [choice, count, rest @ ..] = bytes else {
@@ -47,7 +47,7 @@ fuzz_target!(|bytes: &[u8]| {
         ..BuildOptions::default()
     };
     if let Ok(built) = build(&mesh, &options, &|_| ()) {
-        let bytes = encode(&built.asset);
+        let bytes = built.asset.to_bytes();
         Asset::from_bytes(&bytes).expect("an asset that was built can be read");
     }
 });

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use vps_build::{BuildOptions, PointCount, Resolution, build, models, write_atomically};
-use vps_core::encode;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = PathBuf::from(std::env::args().nth(1).unwrap_or("torus.vps".into()));
@@ -13,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..BuildOptions::default()
     };
     let built = build(&models::torus(48), &options, &|stage| println!("{stage:?}"))?;
-    write_atomically(&file, &encode(&built.asset))?;
+    write_atomically(&file, &built.asset.to_bytes())?;
     let tree = &built.asset.tree;
     println!(
         "{}: {} points in {} levels",

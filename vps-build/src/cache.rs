@@ -126,10 +126,7 @@ mod tests {
         let again = get(&options);
         assert!(again.build_s.is_none());
         assert_eq!(first.key, again.key);
-        assert_eq!(
-            vps_core::encode(&first.asset),
-            vps_core::encode(&again.asset)
-        );
+        assert_eq!(first.asset.to_bytes(), again.asset.to_bytes());
         let other = get(&BuildOptions {
             margin: options.margin + 1,
             ..options.clone()

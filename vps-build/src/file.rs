@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use vps_core::{Asset, FormatError, encode};
+use vps_core::{Asset, FormatError};
 
 /// Why a file could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -53,7 +53,7 @@ pub fn read_asset(path: &Path) -> Result<Asset<'static>, FileError> {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_asset(path: &Path, asset: &Asset<'_>) -> Result<(), FileError> {
-    write_atomically(path, &encode(asset))
+    write_atomically(path, &asset.to_bytes())
 }
 
 /// Writes a file under a temporary name beside `path`, and renames it once it is complete. Missing

@@ -3,6 +3,14 @@
 use glamx::{Mat3, Pose3, Vec3};
 
 /// An axis-aligned box, its corners in metres in the frame of the bounded object.
+///
+/// ```
+/// use vps_core::{Aabb, Vec3};
+///
+/// let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+/// assert!(unit.contains(Vec3::splat(0.5)));
+/// assert_eq!(unit.distance_outside(Vec3::new(0.5, 0.5, 1.25)), 0.25);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// The corner with the smallest coordinates.

@@ -8,22 +8,17 @@
 //! documentation are those of their paper.
 //!
 //! ```
-//! use vps_core::{Cuboid, Pose3, Query, Vec3};
-//! # let (points, normals, areas) = ([[0.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]], [1e-4]);
-//! # let clusters = [vps_core::Cluster {
-//! #     center: [0.0; 3], radius: 1e-6, normal: [0.0, 1.0, 0.0], half_thickness: 1e-6,
-//! #     apex: 0.0, half_curvature: 0.0, first: 0, count: 1, parent_point: 0, area: 1e-4,
-//! # }];
-//! # let levels = [0, 1];
-//! # let tree = vps_core::PointSphereTree::new(
-//! #     points[..].into(), normals[..].into(), areas[..].into(), clusters[..].into(),
-//! #     levels[..].into()).unwrap();
+//! use vps_core::{Cuboid, PointSphereTree, Pose3, Query, Vec3};
+//!
+//! // A shell of a single point, which stands for 1 cm² of the surface; its normal points up, inwards.
+//! let tree = PointSphereTree::flat(&[Vec3::ZERO], &[Vec3::Y], 1e-4)?;
 //! let ground = Cuboid::new(Vec3::new(1.0, 0.1, 1.0));
 //! // The shell's frame lies 0.09 m above the middle of the ground: 10 mm too deep.
 //! let pose = Pose3::from_translation(Vec3::new(0.0, 0.09, 0.0));
 //! let query = Query::new(&tree, &ground, pose);
 //! let deepest = query.deepest().expect("the point is inside");
 //! assert!((deepest.penetration - 0.01).abs() < 1e-6);
+//! # Ok::<(), vps_core::TreeError>(())
 //! ```
 //!
 //! # Queries
@@ -53,6 +48,9 @@
 //!   coordinates of the mesh less [`Asset::origin`], which is zero unless the mesh lies far away.
 //! * **Units** are SI: metres, newtons per metre of stiffness one, newton metres.
 //!
+//! Most users need no more than the items of this page. [`raw`] has what assets are made of, for those
+//! who build them or write fields that answer several points at a time.
+//!
 //! # Features
 //! `std` (default) uses mathematics of the standard library, `libm` that of the `libm` crate; one
 //! of the two must be enabled. `alloc` adds structures that own their data. A query never
@@ -80,6 +78,7 @@ mod field;
 mod force;
 mod map;
 mod query;
+pub mod raw;
 mod shell;
 mod simd;
 mod storage;
@@ -87,13 +86,11 @@ mod storage;
 pub use aabb::Aabb;
 #[cfg(feature = "alloc")]
 pub use asset::ScaleError;
-#[cfg(feature = "alloc")]
-pub use asset::format::encode;
 pub use asset::format::{self, FormatError, VPS_VERSION};
 pub use asset::{Aligned, Asset, MassProperties};
 pub use field::{
-    Ball, Capsule, Cuboid, Cylinder, Discs, DistanceField, FieldFn, HalfSpace, Linear,
-    LocalPenetration, Trilinear, conformance,
+    Ball, Capsule, Cuboid, Cylinder, DistanceField, FieldFn, HalfSpace, Linear, LocalPenetration,
+    Trilinear, conformance,
 };
 pub use force::{
     CouplingError, CouplingOptions, LinearWrench, StepError, Tool, VirtualCoupling, Weight, Wrench,
@@ -101,14 +98,9 @@ pub use force::{
 pub use glamx::{Mat3, Pose3, Quat, Vec3};
 #[cfg(feature = "alloc")]
 pub use map::SurfaceMesh;
-pub use map::store::{self, Store, Values};
-pub use map::{
-    CURVATURE_STEPS, CURVATURE_UNKNOWN, ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError,
-};
+pub use map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError};
 pub use query::{
     Approach, Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact,
     Query, Shells, Side, Sweep, Work,
 };
-pub use shell::{Cluster, MAX_LEVELS, PointSphereTree, TreeError};
-pub use simd::{LANES, Points};
-pub use storage::Storage;
+pub use shell::{Cluster, PointSphereTree, TreeError};

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use vps_core::{
-    Aabb, Ball, Capsule, Cluster, CouplingError, CouplingOptions, Cuboid, Cylinder, DistanceField,
-    FieldFn, HalfSpace, LinearWrench, Mat3, PointSphereTree, Pose3, Quat, Query, StepError, Tool,
-    Vec3, VirtualCoupling, Weight, Wrench,
+    Aabb, Ball, Capsule, CouplingError, CouplingOptions, Cuboid, Cylinder, DistanceField, FieldFn,
+    HalfSpace, LinearWrench, Mat3, PointSphereTree, Pose3, Quat, Query, StepError, Tool, Vec3,
+    VirtualCoupling, Weight, Wrench,
 };
 
 const DT: f32 = 1e-3;
@@ -383,28 +383,7 @@ fn invalid_parameters_are_named() {
 
 /// A tree of one cluster; each point represents 1 mm².
 fn tree_of(points: &[Vec3], normals: &[Vec3]) -> PointSphereTree<'static> {
-    let radius = points.iter().map(|p| p.length()).fold(1e-3, f32::max);
-    let cluster = Cluster {
-        center: [0.0; 3],
-        radius,
-        normal: [0.0, 1.0, 0.0],
-        half_thickness: radius,
-        apex: 0.0,
-        half_curvature: 0.0,
-        first: 0,
-        count: points.len() as u32,
-        parent_point: 0,
-        area: 1e-6 * points.len() as f32,
-    };
-    let arrays = |vectors: &[Vec3]| vectors.iter().map(|v| v.to_array()).collect::<Vec<_>>();
-    PointSphereTree::new(
-        arrays(points).into(),
-        arrays(normals).into(),
-        vec![1e-6; points.len()].into(),
-        vec![cluster].into(),
-        vec![0, 1].into(),
-    )
-    .unwrap()
+    PointSphereTree::flat(points, normals, 1e-6).unwrap()
 }
 
 /// Half of the width of a box that slides, in metres.

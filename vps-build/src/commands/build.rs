@@ -11,7 +11,6 @@ use vps_build::{
     BuildOptions, BuildOutput, ClosestPoints, Clustering, Density, Encoding, PointCount, Repairs,
     Resolution, Sign, Stage, ThinWalls, build, read_mesh, write_asset,
 };
-use vps_core::encode;
 
 use super::Error;
 
@@ -381,7 +380,7 @@ fn summary_json(
     let (map, tree) = (&asset.voxelmap, &asset.tree);
     json!({
         "file": args.output,
-        "file_bytes": encode(asset).len(),
+        "file_bytes": asset.to_bytes().len(),
         "triangles": triangles,
         "origin_m": asset.origin,
         "voxels": map.grid().dims(),

@@ -127,12 +127,12 @@ fn points(tree: &PointSphereTree<'_>, level: Option<u32>) -> Drawing {
     let mut highest = vec![tree.level_count() + 1; tree.point_count()];
     for l in (1..=tree.level_count()).rev() {
         for cluster in tree.level(l) {
-            highest[cluster.parent_point as usize] = l;
+            highest[cluster.parent_point() as usize] = l;
         }
     }
     let chosen: Vec<usize> = match level {
         Some(level) => {
-            let parents = tree.level(level).iter().map(|c| c.parent_point as usize);
+            let parents = tree.level(level).iter().map(|c| c.parent_point() as usize);
             parents.collect()
         }
         None => (0..tree.point_count()).collect(),
@@ -152,8 +152,8 @@ fn spheres(tree: &PointSphereTree<'_>, level: u32) -> Result<Drawing, Error> {
     let mut drawing = Drawing::default();
     for (n, cluster) in tree.level(level).iter().enumerate() {
         let first = drawing.vertices.len() as u32;
-        let center = Vec3::from_array(cluster.center);
-        let on_ball = |v: &DVec3| (center + v.as_vec3() * cluster.radius, color(n as u32));
+        let center = cluster.center();
+        let on_ball = |v: &DVec3| (center + v.as_vec3() * cluster.radius(), color(n as u32));
         drawing.vertices.extend(ball.vertices().iter().map(on_ball));
         let faces = ball
             .triangles()

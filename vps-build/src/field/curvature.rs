@@ -1,9 +1,8 @@
 //! Curvature bounds: the largest second difference of the field around each cell of voxels.
-//! With them a query bounds the field by a linear function (see [`vps_core::Voxelmap::new`]).
+//! With them a query bounds the field by a linear function (see [`vps_core::raw::VoxelmapParts`]).
 
 use rayon::prelude::*;
-use vps_core::store::{CELL_EDGE_VOXELS, cell_dims};
-use vps_core::{CURVATURE_STEPS, CURVATURE_UNKNOWN, Store};
+use vps_core::raw::{CELL_EDGE_VOXELS, CURVATURE_STEPS, CURVATURE_UNKNOWN, Store, cell_dims};
 
 /// Largest distance from the surface, in voxels, with a known bound. Queries rarely look beyond.
 const MAX_DISTANCE: f32 = 24.0;
@@ -109,9 +108,8 @@ fn curvature_of_cell(store: &Store<'_>, sigma: f32, cell: [u32; 3]) -> u8 {
 #[cfg(test)]
 mod tests {
     use vps_core::conformance::check;
-    use vps_core::{
-        Aabb, Discs, DistanceField, ErrorBounds, Grid, Points, Quat, Values, Vec3, Voxelmap,
-    };
+    use vps_core::raw::{Discs, Points, Values, VoxelmapParts};
+    use vps_core::{Aabb, DistanceField, ErrorBounds, Grid, Quat, Vec3, Voxelmap};
 
     use super::*;
 
@@ -139,7 +137,15 @@ mod tests {
             min: Vec3::splat(-11.0),
             max: Vec3::splat(11.0),
         };
-        Voxelmap::new(grid, 1.0, solid, error_bounds, store, curvature.into()).unwrap()
+        Voxelmap::from_parts(VoxelmapParts {
+            grid,
+            sigma: 1.0,
+            solid,
+            error_bounds,
+            store,
+            curvature_bounds: curvature.into(),
+        })
+        .unwrap()
     }
 
     /// Checks fields at their least smooth points, given by `worst`, from half-way between voxels.
@@ -210,16 +216,14 @@ mod tests {
                 beyond: 100.0,
                 narrow_band: 100.0,
             };
-            let curvature = map.curvature_bounds().to_vec();
-            let (grid, store) = (*map.grid(), map.store().clone());
-            let map = Voxelmap::new(
-                grid,
-                1.0,
-                map.solid(),
+            let map = Voxelmap::from_parts(VoxelmapParts {
+                grid: *map.grid(),
+                sigma: 1.0,
+                solid: map.solid(),
                 error_bounds,
-                store,
-                curvature.into(),
-            )
+                store: map.store().clone(),
+                curvature_bounds: map.curvature_bounds().to_vec().into(),
+            })
             .unwrap();
             let down = -slope.normalize();
             for x in [-11.0, -11.5, -13.0] {

@@ -3,7 +3,7 @@
 use glamx::DVec3;
 use rayon::prelude::*;
 use vps_core::Grid;
-use vps_core::store::{CELL_EDGE_VOXELS, cell_dims};
+use vps_core::raw::{CELL_EDGE_VOXELS, cell_dims};
 
 use super::distance::ExactDistances;
 

@@ -1,7 +1,7 @@
 //! Quantisation of penetrations to the values of a store (eq. 1).
 
 use rayon::prelude::*;
-use vps_core::Values;
+use vps_core::raw::Values;
 
 /// How a penetration becomes a stored value.
 #[derive(Clone, Copy)]

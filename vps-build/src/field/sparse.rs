@@ -2,11 +2,11 @@
 
 use glamx::DVec3;
 use rayon::prelude::*;
-use vps_core::store::{
-    BRICK_VALUES, CELL_EDGE_VOXELS, CellGroup, REFINED_CELL_VALUES, RefinedCell, cell_dims,
+use vps_core::raw::{
+    BRICK_VALUES, CELL_EDGE_VOXELS, CellGroup, REFINED_CELL_VALUES, RefinedCell, Store, cell_dims,
     mark_coarse_neighbourhoods,
 };
-use vps_core::{Grid, Store, VoxelmapError};
+use vps_core::{Grid, VoxelmapError};
 
 use super::lattice::{Lattice, Sample, Source};
 use super::quantize::Quantizer;

@@ -1,6 +1,7 @@
 //! The voxelmap of a solid: stored values, error bounds and curvature (section 2.1.1).
 
-use vps_core::{Aabb, ErrorBounds, Grid, Store, Voxelmap};
+use vps_core::raw::{Store, VoxelmapParts};
+use vps_core::{Aabb, ErrorBounds, Grid, Voxelmap};
 
 use super::curvature::curvature_bounds;
 use super::distance::{ExactDistances, by_gradient_descent};
@@ -115,14 +116,14 @@ pub(crate) fn voxelmap(
         narrow_band: ((NARROW_BAND - 0.01) * size) as f32,
     };
     let curvature = curvature_bounds(&store, (quantizer.sigma() / size) as f32);
-    Ok(Voxelmap::new(
+    Ok(Voxelmap::from_parts(VoxelmapParts {
         grid,
-        quantizer.sigma() as f32,
+        sigma: quantizer.sigma() as f32,
         solid,
         error_bounds,
         store,
-        curvature.into(),
-    )?)
+        curvature_bounds: curvature.into(),
+    })?)
 }
 
 /// The quantisation step of eq. 1: λ = 10^-p. By default p is the most decimal places for which

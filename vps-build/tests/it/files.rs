@@ -7,7 +7,7 @@ use crate::support::asset;
 use glamx::DVec3;
 use proptest::prelude::*;
 use vps_build::{Encoding, Mesh, mass_properties, read_asset, read_mesh, write_asset};
-use vps_core::{Asset, DistanceField, FormatError, encode};
+use vps_core::{Asset, DistanceField, FormatError};
 
 /// Bytes at an address that is a multiple of 8.
 fn aligned(bytes: &[u8]) -> Vec<u64> {
@@ -52,7 +52,7 @@ fn an_asset_comes_back_as_it_was() {
     let asset = small();
     write_asset(&path, &asset).unwrap();
     let back = read_asset(&path).unwrap();
-    assert!(encode(&back) == encode(&asset));
+    assert!(back.to_bytes() == asset.to_bytes());
     assert_eq!(back.mass, asset.mass);
     assert_eq!(
         std::fs::read_dir(path.parent().unwrap()).unwrap().count(),
@@ -63,7 +63,7 @@ fn an_asset_comes_back_as_it_was() {
 /// Misaligned bytes are refused, whatever their content. One step of 8 further they are read.
 #[test]
 fn bytes_must_lie_at_a_multiple_of_8() {
-    let bytes = encode(&small());
+    let bytes = small().to_bytes();
     let mut words = vec![0_u64; bytes.len() / 8 + 3];
     let buffer: &mut [u8] = bytemuck::cast_slice_mut(&mut words);
     for offset in 0..=8 {
@@ -81,7 +81,7 @@ fn bytes_must_lie_at_a_multiple_of_8() {
 
 #[test]
 fn other_files_are_refused() {
-    let good = encode(&small());
+    let good = small().to_bytes();
     assert_eq!(parse(&good), Ok(()));
     assert_eq!(parse(b""), Err(FormatError::Foreign));
     assert_eq!(parse(&[b'x'; 500]), Err(FormatError::Foreign));
@@ -103,7 +103,7 @@ proptest! {
     fn damage_is_noticed(
         at in any::<prop::sample::Index>(), bit in 0..8_u32, cut in any::<prop::sample::Index>(),
     ) {
-        let good = encode(&small());
+        let good = small().to_bytes();
         let mut flipped = good.clone();
         let at = at.index(good.len());
         flipped[at] ^= 1 << bit;

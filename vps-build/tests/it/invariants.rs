@@ -8,9 +8,7 @@ use vps_build::{
     BuildOptions, ClosestPoints, Clustering, Density, Encoding, Mesh, PointCount, Resolution, build,
 };
 use vps_core::conformance::check;
-use vps_core::{
-    Ball, Capsule, Cuboid, Cylinder, DistanceField, HalfSpace, Quat, Vec3, Voxelmap, encode,
-};
+use vps_core::{Ball, Capsule, Cuboid, Cylinder, DistanceField, HalfSpace, Quat, Vec3, Voxelmap};
 
 fn clustering() -> impl Strategy<Value = Clustering> {
     prop_oneof![
@@ -39,16 +37,16 @@ proptest! {
         for level in 1..=tree.level_count() {
             let mut seen = vec![0; tree.point_count()];
             for cluster in tree.level(level) {
-                let center = Vec3::from_array(cluster.center);
+                let center = cluster.center();
                 for p in tree.points_below(level, cluster) {
                     seen[p] += 1;
-                    prop_assert!(center.distance(tree.point(p)) <= cluster.radius);
+                    prop_assert!(center.distance(tree.point(p)) <= cluster.radius());
                 }
             }
             prop_assert!(seen.iter().all(|&n| n == 1));
         }
         for leaf in tree.level(tree.level_count()) {
-            for p in leaf.first..leaf.first + leaf.count {
+            for p in leaf.children() {
                 leaves_of[p as usize] += 1;
             }
         }
@@ -305,7 +303,7 @@ fn the_number_of_threads_changes_no_byte() {
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| encode(&asset(&mesh, 500, Encoding::Distances(None))))
+        pool.install(|| asset(&mesh, 500, Encoding::Distances(None)).to_bytes())
     };
     let one = bytes(1);
     assert!(one == bytes(2));

@@ -2,10 +2,11 @@
 
 use proptest::prelude::*;
 use vps_build::{Encoding, Mesh};
+use vps_core::raw::Points;
 use vps_core::{
     Approach, Asset, Ball, Body, BodyPair, Capsule, Contact, ContactManifold, Cuboid, Cylinder,
-    DistanceField, FieldFn, HalfSpace, LinearWrench, Mat3, Points, Pose3, Query, Shells, Sweep,
-    Vec3, Voxelmap, Weight, Work, Wrench,
+    DistanceField, FieldFn, HalfSpace, LinearWrench, Mat3, Pose3, Query, Shells, Sweep, Vec3,
+    Voxelmap, Weight, Work, Wrench,
 };
 
 use crate::support::{asset, asset_of, bumpy_mesh, cases, density, encoding, pose, vector};

@@ -98,7 +98,7 @@ proptest! {
         let found = built(&cluttered, Sign::Winding);
         let expected = built(&mesh, Sign::Winding);
         prop_assert_eq!(
-            vps_core::encode(&found.asset).len(), vps_core::encode(&expected.asset).len());
+            found.asset.to_bytes().len(), expected.asset.to_bytes().len());
         prop_assert_eq!(found.repairs.removed_faces, doubled.len() + 1);
         prop_assert_eq!((found.repairs.closed_holes, found.repairs.hidden_faces), (0, 0));
         let near = f64::from(found.asset.voxelmap.error_bounds().in_band);

@@ -23,7 +23,7 @@
 //! |---|---|---|
 //! | parameters | see below | 136 |
 //! | values v of the voxelmap, in the order of its [`Store`] | i16 or f32 | 2 or 4 |
-//! | curvature bounds, one for each cell of 8 x 8 x 8 voxels (see [`Voxelmap::new`]) | u8 | 1 |
+//! | curvature bounds, one for each cell of 8 x 8 x 8 voxels (see [`VoxelmapParts`]) | u8 | 1 |
 //! | groups of cells | a [`CellGroup`]: two times bits u64, rank u32, zero u32 | 24 |
 //! | refined cells | a [`RefinedCell`]: bits u64, first brick u32, zero u32 | 16 |
 //! | points in metres, in the order of the leaves | 3 x f32 | 12 |
@@ -54,8 +54,8 @@ use super::Asset;
 use super::mass::MassProperties;
 use crate::aabb::Aabb;
 use crate::map::store::{CellGroup, RefinedCell, Store, Values};
-use crate::map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError};
-use crate::shell::{Cluster, PointSphereTree, TreeError};
+use crate::map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError, VoxelmapParts};
+use crate::shell::{Cluster, PointSphereTree, TreeError, TreeParts};
 
 /// Version of the `.vps` file this library reads and writes.
 pub const VPS_VERSION: u64 = 5;
@@ -105,7 +105,15 @@ struct Parameters {
 }
 
 /// Why bytes are not an [`Asset`].
+///
+/// ```
+/// use vps_core::{Aligned, Asset, FormatError};
+///
+/// let foreign = Aligned([0; 64]);
+/// assert_eq!(Asset::from_bytes(&foreign.0).unwrap_err(), FormatError::Foreign);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FormatError {
     /// The file is of another kind.
     #[error("not a .vps file")]
@@ -255,91 +263,94 @@ impl<'a> Asset<'a> {
         }
         Ok(Self {
             origin: p.origin,
-            voxelmap: Voxelmap::new(
-                Grid::new(Vec3::from_array(p.grid_origin), p.voxel_size, p.dims)?,
-                p.sigma,
-                Aabb {
+            voxelmap: Voxelmap::from_parts(VoxelmapParts {
+                grid: Grid::new(Vec3::from_array(p.grid_origin), p.voxel_size, p.dims)?,
+                sigma: p.sigma,
+                solid: Aabb {
                     min: Vec3::from_array(p.solid_min),
                     max: Vec3::from_array(p.solid_max),
                 },
-                ErrorBounds {
+                error_bounds: ErrorBounds {
                     in_band: p.in_band,
                     beyond: p.beyond,
                     narrow_band: p.narrow_band,
                 },
                 store,
-                cast(bytes, curvature_bounds, header.curvature_bounds as usize)?.into(),
-            )?,
-            tree: PointSphereTree::new(
-                cast(bytes, points, point_count)?.into(),
-                cast(bytes, normals, point_count)?.into(),
-                cast(bytes, areas, point_count)?.into(),
-                cast(bytes, clusters, header.clusters as usize)?.into(),
-                cast(bytes, levels, header.level_starts as usize)?.into(),
-            )?,
+                curvature_bounds: cast(bytes, curvature_bounds, header.curvature_bounds as usize)?
+                    .into(),
+            })?,
+            tree: PointSphereTree::from_parts(TreeParts {
+                points: cast(bytes, points, point_count)?.into(),
+                normals: cast(bytes, normals, point_count)?.into(),
+                areas: cast(bytes, areas, point_count)?.into(),
+                clusters: cast(bytes, clusters, header.clusters as usize)?.into(),
+                level_starts: cast(bytes, levels, header.level_starts as usize)?.into(),
+            })?,
             mass: p.mass,
         })
     }
 }
 
-/// Writes an asset as the bytes of a `.vps` file.
 #[cfg(feature = "alloc")]
-pub fn encode(asset: &Asset<'_>) -> alloc::vec::Vec<u8> {
-    use bytemuck::{bytes_of, cast_slice};
+impl Asset<'_> {
+    /// The bytes of the `.vps` file of this asset, for [`from_bytes`](Self::from_bytes).
+    pub fn to_bytes(&self) -> alloc::vec::Vec<u8> {
+        use bytemuck::{bytes_of, cast_slice};
 
-    let (map, tree) = (&asset.voxelmap, &asset.tree);
-    let values = map.store().values();
-    let (groups, cells) = map.store().cells();
-    let mut header = Header {
-        magic: MAGIC,
-        version: VPS_VERSION,
-        checksum: 0,
-        values: values.len() as u64,
-        points: tree.point_count() as u64,
-        clusters: tree.clusters().len() as u64,
-        groups: groups.len() as u32,
-        cells: cells.len() as u32,
-        curvature_bounds: map.curvature_bounds().len() as u32,
-        value_bytes: match values {
-            Values::Integers(_) => 2,
-            Values::Floats(_) => 4,
-        },
-        level_starts: tree.level_starts().len() as u16,
-    };
-    let error_bounds = map.error_bounds();
-    let parameters = Parameters {
-        origin: asset.origin,
-        dims: map.grid().dims(),
-        grid_origin: map.grid().origin().to_array(),
-        voxel_size: map.grid().voxel_size(),
-        sigma: map.sigma(),
-        solid_min: map.solid().min.to_array(),
-        solid_max: map.solid().max.to_array(),
-        in_band: error_bounds.in_band,
-        beyond: error_bounds.beyond,
-        narrow_band: error_bounds.narrow_band,
-        mass: asset.mass,
-        zero: 0,
-    };
-    let sections: [&[u8]; 10] = [
-        bytes_of(&parameters),
-        values.bytes(),
-        map.curvature_bounds(),
-        cast_slice(groups),
-        cast_slice(cells),
-        cast_slice(tree.points()),
-        cast_slice(tree.normals()),
-        cast_slice(tree.areas()),
-        cast_slice(tree.clusters()),
-        cast_slice(tree.level_starts()),
-    ];
-    let mut bytes = alloc::vec![0; size_of::<Header>()];
-    for section in sections {
-        bytes.resize(bytes.len().next_multiple_of(SECTION_ALIGN), 0);
-        bytes.extend_from_slice(section);
+        let (map, tree) = (&self.voxelmap, &self.tree);
+        let values = map.store().values();
+        let (groups, cells) = map.store().cells();
+        let mut header = Header {
+            magic: MAGIC,
+            version: VPS_VERSION,
+            checksum: 0,
+            values: values.len() as u64,
+            points: tree.point_count() as u64,
+            clusters: tree.clusters().len() as u64,
+            groups: groups.len() as u32,
+            cells: cells.len() as u32,
+            curvature_bounds: map.curvature_bounds().len() as u32,
+            value_bytes: match values {
+                Values::Integers(_) => 2,
+                Values::Floats(_) => 4,
+            },
+            level_starts: tree.level_starts().len() as u16,
+        };
+        let error_bounds = map.error_bounds();
+        let parameters = Parameters {
+            origin: self.origin,
+            dims: map.grid().dims(),
+            grid_origin: map.grid().origin().to_array(),
+            voxel_size: map.grid().voxel_size(),
+            sigma: map.sigma(),
+            solid_min: map.solid().min.to_array(),
+            solid_max: map.solid().max.to_array(),
+            in_band: error_bounds.in_band,
+            beyond: error_bounds.beyond,
+            narrow_band: error_bounds.narrow_band,
+            mass: self.mass,
+            zero: 0,
+        };
+        let sections: [&[u8]; 10] = [
+            bytes_of(&parameters),
+            values.bytes(),
+            map.curvature_bounds(),
+            cast_slice(groups),
+            cast_slice(cells),
+            cast_slice(tree.points()),
+            cast_slice(tree.normals()),
+            cast_slice(tree.areas()),
+            cast_slice(tree.clusters()),
+            cast_slice(tree.level_starts()),
+        ];
+        let mut bytes = alloc::vec![0; size_of::<Header>()];
+        for section in sections {
+            bytes.resize(bytes.len().next_multiple_of(SECTION_ALIGN), 0);
+            bytes.extend_from_slice(section);
+        }
+        bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
+        header.checksum = xxh3_64(&bytes[CHECKSUM_START..]);
+        bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
+        bytes
     }
-    bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
-    header.checksum = xxh3_64(&bytes[CHECKSUM_START..]);
-    bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
-    bytes
 }

@@ -4,6 +4,18 @@ use bytemuck::{Pod, Zeroable};
 use glamx::{Mat3, Vec3};
 
 /// Mass properties of a homogeneous solid of density one (1 kg/m³).
+///
+/// ```
+/// use vps_core::MassProperties;
+///
+/// // A cube of a metre.
+/// let cube = MassProperties {
+///     volume: 1.0,
+///     center_of_mass: [0.5; 3],
+///     inertia: [1.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0, 0.0, 0.0, 0.0],
+/// };
+/// assert!((cube.inertia_tensor(12.0).x_axis.x - 2.0).abs() < 1e-6);
+/// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct MassProperties {

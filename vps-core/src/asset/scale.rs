@@ -5,11 +5,21 @@ use alloc::vec::Vec;
 use super::Asset;
 use super::mass::MassProperties;
 use crate::aabb::Aabb;
-use crate::map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError};
-use crate::shell::{Cluster, PointSphereTree, TreeError};
+use crate::map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError, VoxelmapParts};
+use crate::shell::{Cluster, ClusterParts, PointSphereTree, TreeError, TreeParts};
 
 /// Why an asset cannot be scaled.
+///
+/// ```
+/// use vps_core::{Asset, ScaleError};
+///
+/// fn halved(asset: &Asset<'_>) -> Result<Asset<'static>, ScaleError> {
+///     assert_eq!(asset.scaled(-0.5).unwrap_err(), ScaleError::Factor(-0.5));
+///     asset.scaled(0.5)
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScaleError {
     /// The factor is not positive and finite.
     #[error("the scale must be positive and finite, not {0}")]
@@ -68,17 +78,14 @@ fn scaled_map(map: &Voxelmap<'_>, factor: f32) -> Result<Voxelmap<'static>, Scal
         min: solid.min * factor,
         max: solid.max * factor,
     };
-    let store = map.store().clone().into_owned();
-    let curvature_bounds = map.curvature_bounds().to_vec().into();
-    let sigma = map.sigma() * factor;
-    Ok(Voxelmap::new(
+    Ok(Voxelmap::from_parts(VoxelmapParts {
         grid,
-        sigma,
+        sigma: map.sigma() * factor,
         solid,
         error_bounds,
-        store,
-        curvature_bounds,
-    )?)
+        store: map.store().clone().into_owned(),
+        curvature_bounds: map.curvature_bounds().to_vec().into(),
+    })?)
 }
 
 fn scaled_tree(
@@ -88,26 +95,27 @@ fn scaled_tree(
     let times = |v: &[f32; 3]| v.map(|c| c * factor);
     // Rounding may move a point out of its ball and away from its paraboloid by this.
     let slack = 8.0 * f32::EPSILON * tree.origin_distance_bound();
-    let cluster = |c: &Cluster| Cluster {
-        center: times(&c.center),
-        radius: (c.radius + slack) * factor,
-        normal: c.normal,
-        half_thickness: (c.half_thickness + slack) * factor,
-        apex: c.apex * factor,
-        half_curvature: c.half_curvature / factor,
-        area: c.area * factor * factor,
-        ..*c
+    let cluster = |Cluster(c): &Cluster| {
+        Cluster::from(ClusterParts {
+            center: times(&c.center),
+            radius: (c.radius + slack) * factor,
+            half_thickness: (c.half_thickness + slack) * factor,
+            apex: c.apex * factor,
+            half_curvature: c.half_curvature / factor,
+            area: c.area * factor * factor,
+            ..*c
+        })
     };
     let points: Vec<_> = tree.points().iter().map(times).collect();
     let areas: Vec<_> = tree.areas().iter().map(|a| a * factor * factor).collect();
     let clusters: Vec<_> = tree.clusters().iter().map(cluster).collect();
-    Ok(PointSphereTree::new(
-        points.into(),
-        tree.normals().to_vec().into(),
-        areas.into(),
-        clusters.into(),
-        tree.level_starts().to_vec().into(),
-    )?)
+    Ok(PointSphereTree::from_parts(TreeParts {
+        points: points.into(),
+        normals: tree.normals().to_vec().into(),
+        areas: areas.into(),
+        clusters: clusters.into(),
+        level_starts: tree.level_starts().to_vec().into(),
+    })?)
 }
 
 fn scaled_mass(mass: &MassProperties, factor: f32) -> MassProperties {

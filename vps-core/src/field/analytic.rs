@@ -67,6 +67,14 @@ impl<S: Convex> DistanceField for S {
 }
 
 /// A ball centred at the origin.
+///
+/// ```
+/// use vps_core::{Ball, DistanceField, Vec3};
+///
+/// let solid = Ball::new(0.1);
+/// let depth = -solid.signed_distance(Vec3::X * 0.08);
+/// assert!((depth - 0.02).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     radius: f32,
@@ -101,6 +109,14 @@ impl Convex for Ball {
 }
 
 /// An axis-aligned box centred at the origin.
+///
+/// ```
+/// use vps_core::{Cuboid, DistanceField, Vec3};
+///
+/// let solid = Cuboid::new(Vec3::new(0.3, 0.2, 0.1));
+/// let depth = -solid.signed_distance(Vec3::Z * 0.09);
+/// assert!((depth - 0.01).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     half_extents: Vec3,
@@ -153,6 +169,14 @@ impl Convex for Cuboid {
 }
 
 /// The half-space on one side of a plane through the origin.
+///
+/// ```
+/// use vps_core::{DistanceField, HalfSpace, Vec3};
+///
+/// let solid = HalfSpace::new(Vec3::Y);
+/// let depth = -solid.signed_distance(Vec3::new(5.0, -0.03, 5.0));
+/// assert!((depth - 0.03).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
     outward_normal: Vec3,
@@ -190,6 +214,14 @@ impl Convex for HalfSpace {
 }
 
 /// The points within a radius of a segment of the y axis centred at the origin.
+///
+/// ```
+/// use vps_core::{Capsule, DistanceField, Vec3};
+///
+/// let solid = Capsule::new(0.5, 0.1);
+/// let depth = -solid.signed_distance(Vec3::new(0.07, 0.4, 0.0));
+/// assert!((depth - 0.03).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     half_height: f32,
@@ -235,6 +267,14 @@ impl Convex for Capsule {
 }
 
 /// A cylinder around the y axis, centred at the origin.
+///
+/// ```
+/// use vps_core::{Cylinder, DistanceField, Vec3};
+///
+/// let solid = Cylinder::new(0.5, 0.1);
+/// let depth = -solid.signed_distance(Vec3::new(0.0, 0.48, 0.0));
+/// assert!((depth - 0.02).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     half_height: f32,

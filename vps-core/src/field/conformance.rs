@@ -8,7 +8,20 @@ use crate::field::distance_field::DistanceField;
 use crate::simd::{LANES, Points};
 
 /// A violated requirement of [`DistanceField`].
+///
+/// ```
+/// use vps_core::conformance::{Violation, check};
+/// use vps_core::{Aabb, FieldFn, Vec3};
+///
+/// // Grows twice as fast as stated.
+/// let ball = |p: Vec3| 2.0 * (0.1 - p.length());
+/// let bounds = Aabb { min: Vec3::splat(-0.1), max: Vec3::splat(0.1) };
+/// let field = FieldFn::new(ball, 1.0, bounds, 0.0);
+/// let found = check(&field, Vec3::X * 0.2, 0.1, Vec3::NEG_X, Vec3::Y);
+/// assert!(matches!(found, Err(Violation::Bound { .. })));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Violation {
     /// The bound of a ball or disc is below the penetration of a point in it.
     #[error(
@@ -83,6 +96,13 @@ pub enum Violation {
 ///
 /// # Errors
 /// The first violation.
+///
+/// ```
+/// use vps_core::{Ball, Vec3, conformance};
+///
+/// conformance::check(&Ball::new(0.1), Vec3::Y * 0.1, 0.03, Vec3::X * 0.7, Vec3::Y)?;
+/// # Ok::<(), conformance::Violation>(())
+/// ```
 pub fn check(
     field: &impl DistanceField,
     center: Vec3,

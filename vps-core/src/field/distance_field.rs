@@ -12,6 +12,38 @@ use crate::simd::{LANES, Points};
 /// [`Voxelmap::trilinear`](crate::Voxelmap::trilinear)), analytic shapes and
 /// [functions](crate::FieldFn) implement it; [`conformance`](crate::conformance) holds the checks
 /// an implementation must pass.
+///
+/// Queries ask for several points at a time, which by default are taken one by one. [`raw`](crate::raw)
+/// tells how a field answers them together, which is faster.
+///
+/// ```
+/// use vps_core::{Aabb, DistanceField, Vec3, conformance};
+///
+/// /// The layer of 0.2 m around the plane y = 0.
+/// struct Layer;
+///
+/// impl DistanceField for Layer {
+///     fn penetration(&self, point: Vec3, _normal: Vec3) -> f32 {
+///         0.1 - point.y.abs()
+///     }
+///     fn inward_direction(&self, point: Vec3) -> Vec3 {
+///         if point.y > 0.0 { Vec3::NEG_Y } else { Vec3::Y }
+///     }
+///     fn penetration_bound(&self, center: Vec3, radius: f32) -> f32 {
+///         self.penetration(center, Vec3::ZERO) + radius
+///     }
+///     fn bounds(&self) -> Aabb {
+///         let far = f32::INFINITY;
+///         Aabb { min: Vec3::new(-far, -0.1, -far), max: Vec3::new(far, 0.1, far) }
+///     }
+///     fn error_bound(&self) -> f32 {
+///         1e-7
+///     }
+/// }
+///
+/// conformance::check(&Layer, Vec3::new(0.0, 0.08, 0.0), 0.05, Vec3::X, Vec3::Y)?;
+/// # Ok::<(), conformance::Violation>(())
+/// ```
 pub trait DistanceField {
     /// Penetration V(P) of a shell point in metres: positive inside, negative outside
     /// (section 2.2).
@@ -42,6 +74,7 @@ pub trait DistanceField {
     }
 
     /// [`penetration`](Self::penetration) of several points, the same to the bit.
+    #[doc(hidden)]
     #[inline(always)]
     fn penetrations(&self, points: &Points, normals: &Points) -> [f32; LANES] {
         core::array::from_fn(|i| self.penetration(points.get(i), normals.get(i)))
@@ -50,6 +83,7 @@ pub trait DistanceField {
     /// [`penetrations`](Self::penetrations), the same to the bit, and their gradients ∇V per metre,
     /// which point inwards. The gradient at a point outside of the solid may be zero. The default
     /// is [`inward_direction`](Self::inward_direction).
+    #[doc(hidden)]
     #[inline(always)]
     fn penetrations_and_gradients(
         &self,
@@ -69,6 +103,7 @@ pub trait DistanceField {
     /// Upper bounds on the [`penetration`](Self::penetration) in several pieces, each at most the
     /// [`penetration_bound`](Self::penetration_bound) of the ball around it. A field with known
     /// curvature can exploit the shape of a piece; the default takes the balls.
+    #[doc(hidden)]
     #[inline(always)]
     fn penetration_bounds(&self, discs: &Discs) -> [f32; LANES] {
         core::array::from_fn(|i| self.penetration_bound(discs.centers.get(i), discs.radii[i]))

@@ -8,6 +8,8 @@ mod extrapolation;
 mod function;
 mod grid_border;
 mod sampling;
+#[cfg(feature = "alloc")]
+mod to_voxelmap;
 
 pub use self::analytic::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
 pub use self::discs::Discs;

@@ -24,6 +24,20 @@ use crate::simd::Vectors;
 ///
 /// The normals of the shell are not used. Where they are tilted, as at sharp edges, forces along them
 /// would not derive from a potential, and their stiffness would hinder sliding.
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3, Weight};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+/// let contact = query.linear_wrench(Vec3::ZERO, Weight::Area) * 1e9; // N/m³
+/// assert!((contact.wrench.force.y - 1e3).abs() < 1e-2);
+/// assert!((contact.translational.y_axis.y - 1e5).abs() < 1.0); // N/m
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinearWrench {
     /// Force and torque: minus the derivative of the potential.

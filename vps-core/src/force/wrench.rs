@@ -12,6 +12,20 @@ use crate::shell::PointSphereTree;
 use crate::simd::{Vectors, padded};
 
 /// The penalty force and torque of a contact set (eqs. 2 and 3), for stiffness one.
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3, Weight};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+/// let stiffness = 1e9; // N/m³
+/// let force = query.wrench(Vec3::ZERO, Weight::Area).force * stiffness;
+/// assert!((force - Vec3::Y * 1e3).length() < 1e-2);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// Sum of wVn over the contacts: newtons once multiplied by a stiffness.
@@ -22,6 +36,20 @@ pub struct Wrench {
 }
 
 /// The weight of each contact in a [`Wrench`].
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3, Weight};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+/// let force = |weight| query.wrench(Vec3::ZERO, weight).force.y;
+/// assert!((force(Weight::Point) - 0.01).abs() < 1e-7);
+/// assert!((force(Weight::Area) - 0.01 * 1e-4).abs() < 1e-11);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weight {
     /// One, as in eqs. 2 and 3: the force is in metres, the stiffness in N/m. Twice the points

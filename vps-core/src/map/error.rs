@@ -4,7 +4,18 @@ use crate::aabb::Aabb;
 use crate::map::error_bounds::ErrorBounds;
 
 /// Why a [`Voxelmap`](crate::Voxelmap) was refused.
+///
+/// ```
+/// use vps_core::{Ball, Grid, Vec3, Voxelmap, VoxelmapError};
+///
+/// // The ball is as large as the grid.
+/// let grid = Grid::new(Vec3::splat(-0.1), 0.02, [10; 3])?;
+/// let refused = Voxelmap::of_field(grid, &Ball::new(0.1));
+/// assert!(matches!(refused, Err(VoxelmapError::Solid(_))));
+/// # Ok::<(), vps_core::GridError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VoxelmapError {
     /// The number of values does not match the dimensions of a dense store, or the cells of a
     /// sparse one.

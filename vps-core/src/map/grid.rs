@@ -7,6 +7,15 @@ use crate::aabb::Aabb;
 use crate::simd::{Vectors, Voxels};
 
 /// A regular grid of cubical voxels (section 2.1.1).
+///
+/// ```
+/// use vps_core::{Grid, Vec3};
+///
+/// let grid = Grid::new(Vec3::ZERO, 0.5, [4, 3, 2])?;
+/// assert_eq!(grid.voxel_at(Vec3::new(0.6, 0.1, 0.9)), [1, 0, 1]);
+/// assert_eq!(grid.center([1, 0, 1]), Vec3::new(0.75, 0.25, 0.75));
+/// # Ok::<(), vps_core::GridError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     voxel_size: f32,
@@ -20,7 +29,14 @@ pub struct Grid {
 }
 
 /// Why a [`Grid`] was refused.
+///
+/// ```
+/// use vps_core::{Grid, GridError, Vec3};
+///
+/// assert_eq!(Grid::new(Vec3::ZERO, 0.0, [4; 3]), Err(GridError::VoxelSize(0.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
     /// The voxel size is invalid.
     #[error("the voxel size must be positive and finite, not {0} m")]

@@ -3,7 +3,7 @@
 mod error;
 mod error_bounds;
 mod grid;
-pub mod store;
+pub(crate) mod store;
 #[cfg(feature = "alloc")]
 mod surface_mesh;
 mod voxelmap;
@@ -13,4 +13,4 @@ pub use self::error_bounds::ErrorBounds;
 pub use self::grid::{Grid, GridError};
 #[cfg(feature = "alloc")]
 pub use self::surface_mesh::SurfaceMesh;
-pub use self::voxelmap::{CURVATURE_STEPS, CURVATURE_UNKNOWN, Voxelmap};
+pub use self::voxelmap::{CURVATURE_STEPS, CURVATURE_UNKNOWN, Voxelmap, VoxelmapParts};

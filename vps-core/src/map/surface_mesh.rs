@@ -8,6 +8,16 @@ use crate::map::voxelmap::Voxelmap;
 
 /// Quadrilaterals over vertices in metres, in the frame of the map, counter-clockwise seen from
 /// outside. They need not be planar.
+///
+/// ```
+/// use vps_core::{Ball, Grid, Vec3, Voxelmap};
+///
+/// let grid = Grid::new(Vec3::splat(-0.15), 0.01, [30; 3])?;
+/// let mesh = Voxelmap::of_field(grid, &Ball::new(0.1))?.surface_mesh();
+/// assert!(mesh.vertices.iter().all(|v| (v.length() - 0.1).abs() < 1e-3));
+/// assert_eq!(mesh.triangles().count(), 2 * mesh.squares.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceMesh {
     /// In metres.

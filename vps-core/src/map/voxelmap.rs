@@ -17,6 +17,16 @@ use crate::storage::Storage;
 /// truncated to the precision p (eq. 1); with σ = 1 m they are floating-point distances. A map is
 /// sampled through one of its views, which differ in the value between the centres:
 /// [`local`](Self::local), [`linear`](Self::linear) and [`trilinear`](Self::trilinear).
+///
+/// ```
+/// use vps_core::{Cuboid, DistanceField, Grid, Vec3, Voxelmap};
+///
+/// let grid = Grid::new(Vec3::splat(-0.2), 0.02, [20; 3])?;
+/// let map = Voxelmap::of_field(grid, &Cuboid::new(Vec3::new(0.15, 0.1, 0.1)))?;
+/// assert!((map.center_penetration(grid.voxel_at(Vec3::ZERO)) - 0.09).abs() < 1e-6);
+/// assert!((map.trilinear().penetration(Vec3::Y * 0.08, Vec3::ZERO) - 0.02).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Voxelmap<'a> {
     grid: Grid,
@@ -33,26 +43,41 @@ pub const CURVATURE_UNKNOWN: u8 = u8::MAX;
 /// Steps of a curvature bound per voxel size: a step is s / 127.
 pub const CURVATURE_STEPS: f32 = 127.0;
 
+/// What a [`Voxelmap`] consists of, for [`Voxelmap::from_parts`].
+#[derive(Clone, Debug)]
+pub struct VoxelmapParts<'a> {
+    /// The grid, in the field frame.
+    pub grid: Grid,
+    /// Metres of one step of a value.
+    pub sigma: f32,
+    /// A box around the mesh the map was made from, in the field frame. It lies between the outermost
+    /// voxel centres.
+    pub solid: Aabb,
+    /// Error bounds of the values.
+    pub error_bounds: ErrorBounds,
+    /// The values, in units of `sigma`; positive inside.
+    pub store: Store<'a>,
+    /// A curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z), valid in it and in
+    /// the cells around it. In steps of s / 127, it bounds from above the second differences of the
+    /// values along an axis, and the deviation from a plane of any square of four neighbours; 255 where
+    /// it is unknown. It makes queries faster, and must be correct. May be empty.
+    pub curvature_bounds: Storage<'a, u8>,
+}
+
 impl<'a> Voxelmap<'a> {
-    /// A map over `grid` with the values of `store` in units of `sigma` metres. `solid` is a box
-    /// around the mesh the map was made from, and lies between the outermost voxel centres.
-    ///
-    /// `curvature_bounds` holds a curvature bound for each cell of 8 x 8 x 8 voxels (x first, then y, then z),
-    /// valid in it and in the cells around it. In steps of s / 127, it bounds from above the second
-    /// differences of the values along an axis, and the deviation from a plane of any square of
-    /// four neighbours; 255 where it is unknown. It makes queries faster, and must be correct. It
-    /// may be empty.
+    /// A map of its [parts](crate::raw::VoxelmapParts), for those who build maps.
     ///
     /// # Errors
     /// When the parts are inconsistent.
-    pub fn new(
-        grid: Grid,
-        sigma: f32,
-        solid: Aabb,
-        error_bounds: ErrorBounds,
-        store: Store<'a>,
-        curvature_bounds: Storage<'a, u8>,
-    ) -> Result<Self, VoxelmapError> {
+    pub fn from_parts(parts: VoxelmapParts<'a>) -> Result<Self, VoxelmapError> {
+        let VoxelmapParts {
+            grid,
+            sigma,
+            solid,
+            error_bounds,
+            store,
+            curvature_bounds,
+        } = parts;
         if store.dims() != grid.dims() {
             return Err(VoxelmapError::Dims {
                 store: store.dims(),
@@ -125,7 +150,7 @@ impl<'a> Voxelmap<'a> {
         &self.store
     }
 
-    /// The curvature bounds of the cells: see [`new`](Self::new).
+    /// The curvature bounds of the cells: see [`VoxelmapParts`].
     pub fn curvature_bounds(&self) -> &[u8] {
         &self.curvature_bounds
     }

@@ -10,6 +10,18 @@ use crate::query::posed::Query;
 use crate::shell::PointSphereTree;
 
 /// A body with a shell and a field, both in its own frame.
+///
+/// ```
+/// use vps_core::{Ball, Body, BodyPair, PointSphereTree, Pose3, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::Y * 0.1], &[Vec3::NEG_Y], 1e-4)?;
+/// let ball = Body { tree: &tree, field: Ball::new(0.1) };
+/// // The second ball lies above the first, 20 mm too deep.
+/// let pose = Pose3::from_translation(Vec3::Y * 0.18);
+/// let pair = BodyPair::new(ball, ball, pose);
+/// assert!(pair.touches());
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'q, F> {
     /// The pointshell.
@@ -29,6 +41,19 @@ impl<'q> Body<'q, Trilinear<'q>> {
 }
 
 /// Which of two bodies provides the shell for the field of the other.
+///
+/// ```
+/// use vps_core::{Ball, Body, BodyPair, PointSphereTree, Pose3, Shells, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::Y * 0.1], &[Vec3::NEG_Y], 1e-4)?;
+/// let ball = Body { tree: &tree, field: Ball::new(0.1) };
+/// // The second ball lies above the first, 20 mm too deep.
+/// let pose = Pose3::from_translation(Vec3::Y * 0.18);
+/// let pair = BodyPair::new(ball, ball, pose).with_shells(Shells::Second);
+/// // The only point of the second body is on its other side.
+/// assert!(!pair.touches());
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shells {
     /// The body with fewer points, the first one if both have as many: the paper's rule. If the
@@ -46,6 +71,18 @@ pub enum Shells {
 }
 
 /// One of two bodies.
+///
+/// ```
+/// use vps_core::{Ball, Body, BodyPair, PointSphereTree, Pose3, Side, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::Y * 0.1], &[Vec3::NEG_Y], 1e-4)?;
+/// let ball = Body { tree: &tree, field: Ball::new(0.1) };
+/// // The second ball lies above the first, 20 mm too deep.
+/// let pose = Pose3::from_translation(Vec3::Y * 0.18);
+/// let pair = BodyPair::new(ball, ball, pose);
+/// assert_eq!(pair.deepest().unwrap().shell, Side::First);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The first.
@@ -55,6 +92,19 @@ pub enum Side {
 }
 
 /// A contact of two bodies.
+///
+/// ```
+/// use vps_core::{Ball, Body, BodyPair, PointSphereTree, Pose3, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::Y * 0.1], &[Vec3::NEG_Y], 1e-4)?;
+/// let ball = Body { tree: &tree, field: Ball::new(0.1) };
+/// // The second ball lies above the first, 20 mm too deep.
+/// let pose = Pose3::from_translation(Vec3::Y * 0.18);
+/// let pair = BodyPair::new(ball, ball, pose);
+/// let contact = pair.deepest().unwrap();
+/// assert_eq!((contact.position, contact.push), (Vec3::Y * 0.1, Vec3::NEG_Y));
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairContact {
     /// The body whose shell it was found with.
@@ -71,6 +121,18 @@ pub struct PairContact {
 }
 
 /// Two bodies in a relative pose.
+///
+/// ```
+/// use vps_core::{Ball, Body, BodyPair, PointSphereTree, Pose3, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::Y * 0.1], &[Vec3::NEG_Y], 1e-4)?;
+/// let ball = Body { tree: &tree, field: Ball::new(0.1) };
+/// // The second ball lies above the first, 20 mm too deep.
+/// let pose = Pose3::from_translation(Vec3::Y * 0.18);
+/// let pair = BodyPair::new(ball, ball, pose);
+/// assert!((pair.deepest().unwrap().penetration - 0.02).abs() < 1e-6);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct BodyPair<'q, A, B> {
     first: Body<'q, A>,
@@ -188,7 +250,7 @@ impl<'q, A: DistanceField, B: DistanceField> BodyPair<'q, A, B> {
         let (first, second) = (&self.first, &self.second);
         // A body within another one has no larger bounding ball.
         let [first_radius, second_radius] =
-            [first.tree, second.tree].map(|t| t.clusters()[0].radius);
+            [first.tree, second.tree].map(|t| t.clusters()[0].radius());
         let first_is_smaller = first_radius < second_radius;
         let may_be_within = if first_is_smaller {
             let to_second = self.second_to_first.inverse();

@@ -5,6 +5,19 @@ use glamx::Vec3;
 use crate::shell::PointSphereTree;
 
 /// A shell point found in the field.
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let contact = Query::new(&tree, &ground, Pose3::IDENTITY).deepest().unwrap();
+/// assert_eq!((contact.point_index, contact.position, contact.normal), (0, low, Vec3::Y));
+/// assert!((contact.penetration - 0.01).abs() < 1e-6);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Index of the point in the shell.

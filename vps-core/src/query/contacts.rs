@@ -12,6 +12,21 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     ///
     /// Algorithm 1, with two differences that do not change the result: the tree is traversed depth
     /// first, which needs no queue, and a parent point is tested once, with its leaf.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let mut depths = Vec::new();
+    /// Query::new(&tree, &ground, Pose3::IDENTITY)
+    ///     .with_prediction(1.0)
+    ///     .for_each_contact(|contact| depths.push(contact.penetration));
+    /// assert_eq!(depths, [0.01, -0.2]);
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn for_each_contact(&self, visit: impl FnMut(Contact)) {
         self.collect(AllContacts::new(self.prediction, visit));
     }
@@ -30,6 +45,18 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     }
 
     /// Whether there is any contact; stops at the first.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// assert!(Query::new(&tree, &ground, Pose3::IDENTITY).touches());
+    /// assert!(!Query::new(&tree, &ground, Pose3::from_translation(Vec3::Y)).touches());
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn touches(&self) -> bool {
         let mut any = AnyContact {
             prediction: self.prediction,
@@ -42,6 +69,18 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// The contact with the largest penetration δ, the first of equally deep ones.
     ///
     /// Branch and bound: clusters that cannot contain a deeper point are pruned.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let deepest = Query::new(&tree, &ground, Pose3::IDENTITY).deepest();
+    /// assert_eq!(deepest.map(|c| c.penetration), Some(0.01));
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn deepest(&self) -> Option<Contact> {
         let mut deepest = DeepestContact::new(self.prediction);
         self.collect_from_hint(&mut deepest);
@@ -52,6 +91,19 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// apart it is the closest point, and the negative of its penetration their separation (section
     /// 2.2); otherwise it is the [`deepest`](Self::deepest) contact. `None` only for a pose
     /// that is not finite.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let above = Pose3::from_translation(Vec3::Y);
+    /// let separation = -Query::new(&tree, &ground, above).closest().unwrap().penetration;
+    /// assert!((separation - 0.99).abs() < 1e-6);
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn closest(&self) -> Option<Contact>
     where
         W: Copy,

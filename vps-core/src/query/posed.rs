@@ -15,6 +15,23 @@ use crate::simd::Vectors;
 /// Every query gives the same result as a test of all points
 /// ([`for_each_contact_flat`](Self::for_each_contact_flat)), but prunes clusters that cannot change
 /// it. With a pose that is not finite there are no contacts.
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+/// assert!(query.touches());
+/// assert_eq!(query.closest().map(|c| c.point_index), Some(0));
+/// // Lifted by 20 mm.
+/// let above = Query::new(&tree, &ground, Pose3::from_translation(Vec3::Y * 0.02));
+/// assert_eq!(above.deepest(), None);
+/// assert!((above.closest().unwrap().penetration + 0.01).abs() < 1e-6);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Debug)]
 pub struct Query<'q, F: ?Sized, W = ()> {
     pub(crate) tree: &'q PointSphereTree<'q>,
@@ -59,6 +76,19 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     }
 
     /// The same query, counting the clusters and points it tests.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3, Work};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let work = Work::default();
+    /// Query::new(&tree, &ground, Pose3::IDENTITY).counting(&work).deepest();
+    /// assert_eq!(work.points(), 2);
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn counting<'w>(self, work: &'w Work) -> Query<'q, F, &'w Work> {
         Query {
             tree: self.tree,
@@ -78,6 +108,19 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
 impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Speculative distance (`prediction` of parry and rapier): points up to `prediction` metres outside
     /// of the solid count as contacts too; 0 by default.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let above = Query::new(&tree, &ground, Pose3::from_translation(Vec3::Y * 0.02));
+    /// assert!(above.deepest().is_none());
+    /// assert!(above.with_prediction(0.015).deepest().is_some());
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn with_prediction(self, prediction: f32) -> Self {
         Self { prediction, ..self }
     }
@@ -91,6 +134,19 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Has [`touches`](Self::touches), [`deepest`](Self::deepest) and [`manifold`](Self::manifold)
     /// test a point first that is likely to be deep, such as the deepest of the previous step (a
     /// warm start). The result is the same. An index out of range is ignored.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+    /// let before = query.deepest().unwrap();
+    /// assert_eq!(query.with_hint(before.point_index).deepest(), Some(before));
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn with_hint(self, point: u32) -> Self {
         let hint = Some(point).filter(|&p| (p as usize) < self.tree.point_count());
         Self { hint, ..self }

@@ -110,8 +110,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
             collector,
             #[inline(always)]
             |leaf, _, collector| {
-                let leaf = &clusters[leaf as usize];
-                self.test_points((leaf.first, leaf.first + leaf.count), collector)
+                let points = clusters[leaf as usize].children();
+                self.test_points((points.start, points.end), collector)
             },
         );
     }
@@ -155,7 +155,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 }
                 continue;
             }
-            let cluster = &clusters[entry.cluster as usize];
+            let Cluster(cluster) = &clusters[entry.cluster as usize];
             let remaining = cluster.count - entry.visited;
             let first = starts[entry.level as usize] + cluster.first + entry.visited;
             if remaining > LANES as u32 {

@@ -12,6 +12,18 @@ use crate::simd::{LANES, Points};
 /// A pointshell that moves through a distance field during a step: on a straight line, rotating at a
 /// constant rate about the origin of its frame. Finds contacts that a query at the end of the step
 /// would miss because the body tunnelled through.
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Sweep, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::ZERO], &[Vec3::Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let [start, end] = [0.3, -0.1].map(|y| Pose3::from_translation(Vec3::Y * y));
+/// let sweep = Sweep::new(&tree, &ground, start, end);
+/// let impact = sweep.first_contact(1e-3).unwrap();
+/// assert!(impact.time <= 0.75 && impact.time > 0.74);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'q, F: ?Sized> {
     tree: &'q PointSphereTree<'q>,
@@ -24,6 +36,20 @@ pub struct Sweep<'q, F: ?Sized> {
 }
 
 /// The first contact of a [`Sweep`].
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Sweep, Vec3};
+///
+/// let tree = PointSphereTree::flat(&[Vec3::ZERO], &[Vec3::Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let [start, end] = [0.3, -0.1].map(|y| Pose3::from_translation(Vec3::Y * y));
+/// let sweep = Sweep::new(&tree, &ground, start, end);
+/// let impact = sweep.first_contact(1e-3).unwrap();
+/// assert!(impact.time <= 0.75 && impact.time > 0.74);
+/// assert!(impact.closest.penetration.abs() < 2e-3);
+/// assert!(impact.shell_to_field.translation.y < 2e-3);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// Time of impact from 0 at the start to 1 at the end, never later than the exact one.

@@ -12,6 +12,22 @@ use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 
 /// The state of a time-critical query when it ends.
+///
+/// ```
+/// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+/// let estimate = query.time_critical(Vec3::ZERO, |tested| tested < 100);
+/// assert!(estimate.is_complete);
+/// assert_eq!(estimate.deepest, query.deepest());
+/// // Stopped before the first point.
+/// assert_eq!(query.time_critical(Vec3::ZERO, |_| false).level, 0);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The deepest of the tested points.
@@ -66,8 +82,8 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 bound = bound.max(cluster_bound);
                 let cluster = &clusters[cluster as usize];
                 level_estimate.reached = true;
-                if let Some(contact) = self.test_point(cluster.parent_point) {
-                    level_estimate.add(&contact, cluster.area, center, &mut estimate.deepest);
+                if let Some(contact) = self.test_point(cluster.parent_point()) {
+                    level_estimate.add(&contact, cluster.area(), center, &mut estimate.deepest);
                 }
                 true
             };
@@ -94,9 +110,9 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 stopped = true;
                 return false;
             }
-            let leaf = &clusters[leaf as usize];
-            tested += u64::from(leaf.count);
-            self.test_points((leaf.first, leaf.first + leaf.count), all)
+            let points = clusters[leaf as usize].children();
+            tested += u64::from(points.end - points.start);
+            self.test_points((points.start, points.end), all)
         };
         multiversion(
             #[inline(always)]

@@ -1,7 +1,15 @@
 //! Why a tree is refused.
 
 /// Why a [`PointSphereTree`](crate::PointSphereTree) was refused.
+///
+/// ```
+/// use vps_core::{PointSphereTree, TreeError, Vec3};
+///
+/// let refused = PointSphereTree::flat(&[Vec3::ZERO], &[Vec3::Y * 2.0], 1e-4);
+/// assert_eq!(refused.unwrap_err(), TreeError::Normal(0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TreeError {
     /// The shell is empty.
     #[error("the pointshell has no point")]

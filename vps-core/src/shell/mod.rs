@@ -2,8 +2,10 @@
 
 mod cluster;
 mod error;
+#[cfg(feature = "alloc")]
+mod flat;
 mod tree;
 
-pub use self::cluster::Cluster;
+pub use self::cluster::{Cluster, ClusterParts};
 pub use self::error::TreeError;
-pub use self::tree::{MAX_LEVELS, PointSphereTree};
+pub use self::tree::{MAX_LEVELS, PointSphereTree, TreeParts};

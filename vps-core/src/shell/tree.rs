@@ -14,6 +14,16 @@ pub const MAX_LEVELS: usize = 32;
 ///
 /// The children of a cluster are consecutive, and so are the points of a leaf. Every point belongs to
 /// exactly one leaf. All leaves are on the last level.
+///
+/// ```
+/// use vps_core::{PointSphereTree, Vec3};
+///
+/// // Two points of a wall, 1 cm² each.
+/// let tree = PointSphereTree::flat(&[Vec3::ZERO, Vec3::X], &[Vec3::Y, Vec3::Y], 1e-4)?;
+/// assert_eq!((tree.point_count(), tree.level_count()), (2, 1));
+/// assert_eq!(tree.point(1), Vec3::X);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct PointSphereTree<'a> {
     points: Storage<'a, [f32; 3]>,
@@ -25,23 +35,36 @@ pub struct PointSphereTree<'a> {
     origin_distance_bound: f32,
 }
 
+/// What a [`PointSphereTree`] consists of, for [`PointSphereTree::from_parts`].
+#[derive(Clone, Debug)]
+pub struct TreeParts<'a> {
+    /// Points in metres in the shell frame, in the order of the leaves.
+    pub points: Storage<'a, [f32; 3]>,
+    /// Unit inward normals of the points.
+    pub normals: Storage<'a, [f32; 3]>,
+    /// Areas of the surface that the points represent, in m².
+    pub areas: Storage<'a, f32>,
+    /// The clusters, one level after the other from the top.
+    pub clusters: Storage<'a, Cluster>,
+    /// Level L is `level_starts[L - 1]..level_starts[L]`, so there is one start more than levels.
+    pub level_starts: Storage<'a, u32>,
+}
+
 impl<'a> PointSphereTree<'a> {
-    /// A tree over `points` (metres, shell frame) with unit inward `normals` and the `areas` of the
-    /// surface they represent (m²), all in the order of the leaves. `clusters` holds one level
-    /// after the other from the top; level L is `level_starts[L - 1]..level_starts[L]`, so there is
-    /// one start more than levels.
+    /// A tree of its [parts](crate::raw::TreeParts), for those who build trees.
     ///
     /// Checks all requirements of queries, in one pass over the points for each level.
     ///
     /// # Errors
     /// When the parts do not form such a tree.
-    pub fn new(
-        points: Storage<'a, [f32; 3]>,
-        normals: Storage<'a, [f32; 3]>,
-        areas: Storage<'a, f32>,
-        clusters: Storage<'a, Cluster>,
-        level_starts: Storage<'a, u32>,
-    ) -> Result<Self, TreeError> {
+    pub fn from_parts(parts: TreeParts<'a>) -> Result<Self, TreeError> {
+        let TreeParts {
+            points,
+            normals,
+            areas,
+            clusters,
+            level_starts,
+        } = parts;
         if normals.len() != points.len() || areas.len() != points.len() {
             return Err(TreeError::Counts {
                 points: points.len(),
@@ -96,7 +119,7 @@ impl<'a> PointSphereTree<'a> {
             };
             let mut next = 0;
             let start = self.level_starts[level as usize - 1] as usize;
-            for (i, cluster) in self.level(level).iter().enumerate() {
+            for (i, Cluster(cluster)) in self.level(level).iter().enumerate() {
                 if cluster.first as usize != next || cluster.count == 0 {
                     return Err(TreeError::Children(start + i));
                 }
@@ -114,6 +137,7 @@ impl<'a> PointSphereTree<'a> {
             let start = self.level_starts[level as usize - 1] as usize;
             for (i, cluster) in self.level(level).iter().enumerate() {
                 let below = self.points_below(level, cluster);
+                let Cluster(cluster) = cluster;
                 if !below.contains(&(cluster.parent_point as usize)) {
                     return Err(TreeError::ParentPoint(start + i));
                 }
@@ -151,14 +175,14 @@ impl<'a> PointSphereTree<'a> {
     /// # Panics
     /// If the cluster does not belong to that level.
     pub fn points_below(&self, level: u32, cluster: &Cluster) -> core::ops::Range<usize> {
-        let (mut first, mut last) = (cluster.first, cluster.first + cluster.count - 1);
+        let mut range = cluster.children();
         for below in level + 1..=self.level_count() {
             let clusters = self.level(below);
-            first = clusters[first as usize].first;
-            let end = &clusters[last as usize];
-            last = end.first + end.count - 1;
+            let [first, last] =
+                [range.start, range.end - 1].map(|c| clusters[c as usize].children());
+            range = first.start..last.end;
         }
-        first as usize..last as usize + 1
+        range.start as usize..range.end as usize
     }
 
     /// Size of points, normals, areas, clusters and levels in memory in bytes; the same in a file,

@@ -46,8 +46,9 @@ mod tests {
 
     use proptest::prelude::*;
 
-    use crate::store::{
-        BRICK_VALUES, CellGroup, REFINED_CELL_VALUES, RefinedCell, mark_coarse_neighbourhoods,
+    use crate::raw::{
+        BRICK_VALUES, CellGroup, ClusterParts, REFINED_CELL_VALUES, RefinedCell, Store, TreeParts,
+        Values, VoxelmapParts, mark_coarse_neighbourhoods,
     };
     use crate::*;
 
@@ -71,7 +72,7 @@ mod tests {
         let cluster = |first: usize, count: usize, below: core::ops::Range<usize>| {
             let points = points[below.clone()].iter().map(|&p| Vec3::from_array(p));
             let center = points.clone().sum::<Vec3>() / below.len() as f32;
-            let mut cluster = Cluster {
+            let mut cluster = ClusterParts {
                 center: center.to_array(),
                 radius: points
                     .clone()
@@ -89,7 +90,7 @@ mod tests {
             cluster.half_thickness = points
                 .map(|p| cluster.distance_from_paraboloid(p))
                 .fold(0.0, f32::max);
-            cluster
+            Cluster::from(cluster)
         };
         let all = RINGS * POINTS_PER_RING;
         let mut clusters = vec![cluster(0, RINGS, 0..all)];
@@ -99,13 +100,13 @@ mod tests {
         }
         let starts = vec![0, 1, 1 + RINGS as u32, clusters.len() as u32];
         let areas = vec![1.0; all];
-        PointSphereTree::new(
-            points.into(),
-            normals.into(),
-            areas.into(),
-            clusters.into(),
-            starts.into(),
-        )
+        PointSphereTree::from_parts(TreeParts {
+            points: points.into(),
+            normals: normals.into(),
+            areas: areas.into(),
+            clusters: clusters.into(),
+            level_starts: starts.into(),
+        })
         .unwrap()
     }
 
@@ -153,15 +154,14 @@ mod tests {
                 min: Vec3::splat(-0.7),
                 max: Vec3::splat(0.7),
             };
-            let curvature_bounds = curvature_bounds.clone().into();
-            Voxelmap::new(
+            Voxelmap::from_parts(VoxelmapParts {
                 grid,
-                1e-3,
+                sigma: 1e-3,
                 solid,
                 error_bounds,
-                store.unwrap(),
-                curvature_bounds,
-            )
+                store: store.unwrap(),
+                curvature_bounds: curvature_bounds.clone().into(),
+            })
             .unwrap()
         })
     }

@@ -3,7 +3,8 @@
 use rapier3d::math::Pose;
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{Shape, SharedShape, Triangle, TypedShape};
-use vps_core::{Aabb, Discs, DistanceField, LANES, Pose3, Vec3};
+use vps_core::raw::{Discs, LANES};
+use vps_core::{Aabb, DistanceField, Pose3, Vec3};
 
 use super::bounds::{gap, shape_bounds, transformed};
 use super::surface::Surface;

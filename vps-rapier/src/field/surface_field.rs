@@ -1,7 +1,8 @@
 //! A distance field over the triangles of a surface near a shape.
 
 use rapier3d::parry::query::PointQuery;
-use vps_core::{Aabb, Discs, DistanceField, LANES, Vec3};
+use vps_core::raw::{Discs, LANES};
+use vps_core::{Aabb, DistanceField, Vec3};
 
 use super::facet::{Facet, Junction};
 use super::facet_tree::{ClosestPoint, FacetTree, Feature};

@@ -3,7 +3,8 @@
 use rapier3d::math::Vector;
 use rapier3d::parry::query::{PointProjection, PointQuery};
 use rapier3d::parry::shape::FeatureId;
-use vps_core::{Aabb, Ball, DistanceField, LANES, Points, Pose3, Query, Trilinear, Vec3};
+use vps_core::raw::{LANES, Points};
+use vps_core::{Aabb, Ball, DistanceField, Pose3, Query, Trilinear, Vec3};
 
 use super::VpsShape;
 use crate::precision::{core_vector, vector};

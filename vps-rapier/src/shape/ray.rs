@@ -3,7 +3,8 @@
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::query::{Ray, RayCast, RayIntersection};
 use rapier3d::parry::shape::FeatureId;
-use vps_core::{Aabb, DistanceField, LANES, Points, Trilinear, Vec3};
+use vps_core::raw::{LANES, Points};
+use vps_core::{Aabb, DistanceField, Trilinear, Vec3};
 
 use super::VpsShape;
 use crate::precision::{core_real, core_vector, real, vector};

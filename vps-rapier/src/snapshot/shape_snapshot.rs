@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{ColliderHandle, ColliderSet, SharedShape};
 use serde::{Deserialize, Serialize};
-use vps_core::{Asset, encode};
+use vps_core::Asset;
 
 use super::exchange::{exchange_shapes, replace_parts};
 use crate::compound::as_compound_with_vps;
@@ -52,7 +52,7 @@ impl ShapeSnapshot {
                 let asset = *indices.entry(address).or_insert_with(|| {
                     saved.assets.push(match vps.file() {
                         Some(file) => SavedAsset::File(file.into()),
-                        None => SavedAsset::Bytes(encode(vps.asset())),
+                        None => SavedAsset::Bytes(vps.asset().to_bytes()),
                     });
                     saved.assets.len() - 1
                 });

@@ -6,7 +6,8 @@ use std::time::Instant;
 use mesh_to_sdf::{SignMethod, Topology, generate_grid_sdf};
 use serde::Serialize;
 use vps_build::{BuildOptions, Density, Mesh};
-use vps_core::{Asset, Grid, encode};
+use vps_core::raw::encode;
+use vps_core::{Asset, Grid};
 
 use super::errors::{Reference, wrong_spheres};
 use super::peak_memory::peak_memory;

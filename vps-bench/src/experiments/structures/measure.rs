@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use vps_build::BuildOptions;
-use vps_core::{Asset, Cluster, encode};
+use vps_core::{Asset, Cluster};
 
 use super::{Settings, clustering, vps};
 use crate::experiments::experiment::Measurement;
@@ -71,7 +71,7 @@ pub(super) fn run(
         values: store.values().len(),
         map_bytes: store.byte_len(),
         tree_bytes: asset.tree.byte_len(),
-        file_bytes: encode(&asset).len(),
+        file_bytes: asset.to_bytes().len(),
         near_error_m: error_bounds.in_band,
         far_error_m: error_bounds.beyond,
         points: asset.tree.point_count(),
@@ -108,10 +108,10 @@ fn levels(asset: &Asset<'_>, whole: &Row) -> Vec<Row> {
         Row {
             level,
             clusters: Some(clusters.len()),
-            children_mean: Some(mean(&|c| c.count.into())),
-            children_max: clusters.iter().map(|c| c.count).max(),
-            radius_m_mean: Some(mean(&|c| c.radius.into())),
-            radius_m_max: clusters.iter().map(|c| c.radius).reduce(f32::max),
+            children_mean: Some(mean(&|c| c.children().len() as f64)),
+            children_max: clusters.iter().map(|c| c.children().len() as u32).max(),
+            radius_m_mean: Some(mean(&|c| c.radius().into())),
+            radius_m_max: clusters.iter().map(Cluster::radius).reduce(f32::max),
             ..whole.clone()
         }
     };

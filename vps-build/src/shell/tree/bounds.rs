@@ -1,13 +1,14 @@
 //! Bounds of a cluster: ball, paraboloid and area of the points below it.
 
 use rayon::prelude::*;
-use vps_core::{Cluster, Vec3};
+use vps_core::Vec3;
+use vps_core::raw::ClusterParts;
 
 use crate::enclosing_ball::minimal_ball;
 
 /// Sets the ball, the paraboloid and the area of each cluster from the points below it.
 pub(super) fn bound_clusters(
-    clusters: &mut [Cluster],
+    clusters: &mut [ClusterParts],
     level_starts: &[u32],
     points: &[[f32; 3]],
     normals: &[[f32; 3]],

@@ -9,6 +9,7 @@ mod bottom_up;
 mod bounds;
 mod levels;
 
+use vps_core::raw::{ClusterParts, TreeParts};
 use vps_core::{Cluster, PointSphereTree, TreeError};
 
 use self::bounds::bound_clusters;
@@ -48,13 +49,13 @@ fn assemble(
         below = parent_points(&samples.positions, &below, members);
         parents.push(below.clone());
     }
-    let mut clusters: Vec<Cluster> = Vec::new();
+    let mut clusters: Vec<ClusterParts> = Vec::new();
     let mut level_starts = vec![0];
     let mut order = vec![0];
     for (members, parents) in levels.iter().zip(&parents).rev() {
         let mut next = Vec::new();
         for &cluster in &order {
-            clusters.push(Cluster {
+            clusters.push(ClusterParts {
                 center: [0.0; 3],
                 radius: 0.0,
                 normal: [0.0; 3],
@@ -89,11 +90,12 @@ fn assemble(
     }
     let areas: Vec<_> = order.iter().map(|&p| samples.areas[p]).collect();
     bound_clusters(&mut clusters, &level_starts, &points, &normals, &areas);
-    PointSphereTree::new(
-        points.into(),
-        normals.into(),
-        areas.into(),
-        clusters.into(),
-        level_starts.into(),
-    )
+    let clusters: Vec<_> = clusters.into_iter().map(Cluster::from).collect();
+    PointSphereTree::from_parts(TreeParts {
+        points: points.into(),
+        normals: normals.into(),
+        areas: areas.into(),
+        clusters: clusters.into(),
+        level_starts: level_starts.into(),
+    })
 }

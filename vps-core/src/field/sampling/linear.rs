@@ -17,6 +17,17 @@ use crate::simd::{LANES, Points};
 /// diagonal of a voxel and three halves of an edge, (√3 + 3) s / 2. Over a planar part of the
 /// surface it is that of the map alone, up to three times because of the extrapolation.
 /// Discontinuous between voxels where the field is curved.
+///
+/// ```
+/// use vps_core::{Ball, DistanceField, Grid, Vec3, Voxelmap};
+///
+/// let grid = Grid::new(Vec3::splat(-0.15), 0.01, [30; 3])?;
+/// let map = Voxelmap::of_field(grid, &Ball::new(0.1))?;
+/// let field = map.linear();
+/// let depth = field.penetration(Vec3::X * 0.092, Vec3::NEG_X);
+/// assert!((depth - 0.008).abs() <= field.error_bound());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Linear<'m>(&'m Voxelmap<'m>);
 

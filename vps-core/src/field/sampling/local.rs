@@ -14,6 +14,17 @@ use crate::map::Voxelmap;
 /// Reads one value a point. The error is that of the map plus at most the diagonal of a voxel, √3
 /// s: half of it by the distance to the centre C, half of it by the local part n·e. Discontinuous
 /// between voxels.
+///
+/// ```
+/// use vps_core::{Ball, DistanceField, Grid, Vec3, Voxelmap};
+///
+/// let grid = Grid::new(Vec3::splat(-0.15), 0.01, [30; 3])?;
+/// let map = Voxelmap::of_field(grid, &Ball::new(0.1))?;
+/// let field = map.local();
+/// let depth = field.penetration(Vec3::X * 0.092, Vec3::NEG_X);
+/// assert!((depth - 0.008).abs() <= field.error_bound());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct LocalPenetration<'m>(&'m Voxelmap<'m>);
 

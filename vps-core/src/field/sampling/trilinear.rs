@@ -17,6 +17,17 @@ use crate::simd::{LANES, Points, Vectors, Voxels};
 ///
 /// Reads eight values a point. The error is that of the map plus at most half the diagonal of a voxel,
 /// √3/2 s; over a planar part of the surface it is that of the map alone. Continuous.
+///
+/// ```
+/// use vps_core::{Ball, DistanceField, Grid, Vec3, Voxelmap};
+///
+/// let grid = Grid::new(Vec3::splat(-0.15), 0.01, [30; 3])?;
+/// let map = Voxelmap::of_field(grid, &Ball::new(0.1))?;
+/// let field = map.trilinear();
+/// let depth = field.penetration(Vec3::X * 0.092, Vec3::NEG_X);
+/// assert!((depth - 0.008).abs() <= field.error_bound());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Trilinear<'m>(&'m Voxelmap<'m>);
 

@@ -1,7 +1,25 @@
 //! The errors of a coupling and of its steps.
 
 /// Why a coupling was refused.
+///
+/// ```
+/// use vps_core::{CouplingError, CouplingOptions, Mat3, Pose3, Tool, Vec3, VirtualCoupling};
+///
+/// let tool = Tool {
+///     mass: 0.1,
+///     inertia: Mat3::from_diagonal(Vec3::splat(1e-5)),
+///     center: Vec3::ZERO,
+/// };
+/// let options = CouplingOptions::critically_damped(&tool, 1000.0, 2.0);
+/// let weightless = Tool { mass: 0.0, ..tool };
+/// let refused = VirtualCoupling::new(weightless, options, Pose3::IDENTITY);
+/// assert_eq!(
+///     refused.unwrap_err(),
+///     CouplingError::NotPositive { name: "mass", value: 0.0 }
+/// );
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CouplingError {
     /// A mass, a stiffness or a limit is not positive and finite.
     #[error("{name} must be positive and finite, not {value}")]
@@ -28,7 +46,24 @@ pub enum CouplingError {
 }
 
 /// Why a step was refused.
+///
+/// ```
+/// use vps_core::{CouplingError, CouplingOptions, LinearWrench, Mat3, Pose3, StepError, Tool, Vec3,
+///     VirtualCoupling,};
+///
+/// let tool = Tool {
+///     mass: 0.1,
+///     inertia: Mat3::from_diagonal(Vec3::splat(1e-5)),
+///     center: Vec3::ZERO,
+/// };
+/// let options = CouplingOptions::critically_damped(&tool, 1000.0, 2.0);
+/// let mut coupling = VirtualCoupling::new(tool, options, Pose3::IDENTITY)?;
+/// let step = coupling.step(Pose3::IDENTITY, LinearWrench::ZERO, 0.0);
+/// assert_eq!(step, Err(StepError::TimeStep(0.0)));
+/// # Ok::<(), CouplingError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// The device's pose is not finite, or out of the range of 32-bit numbers.
     #[error("the pose of the device is not finite")]

@@ -11,6 +11,19 @@ use crate::asset::MassProperties;
 /// Mass and inertia need not be those of a real tool: the lighter it is, the less its inertia is
 /// felt and the less damping it needs. A light tool is stable with contacts of any stiffness whose
 /// [`LinearWrench`](crate::LinearWrench) is known.
+///
+/// ```
+/// use vps_core::{MassProperties, Tool};
+///
+/// // A cube of a decimetre.
+/// let cube = MassProperties {
+///     volume: 1e-3,
+///     center_of_mass: [0.0; 3],
+///     inertia: [1e-5 / 6.0, 1e-5 / 6.0, 1e-5 / 6.0, 0.0, 0.0, 0.0],
+/// };
+/// let tool = Tool::of(&cube, 0.6);
+/// assert!((tool.inertia.x_axis.x - 1e-3).abs() < 1e-7);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tool {
     /// In kg.
@@ -34,6 +47,21 @@ impl Tool {
 }
 
 /// Spring, damper and limits of a [`VirtualCoupling`](crate::VirtualCoupling).
+///
+/// ```
+/// use vps_core::{CouplingOptions, Mat3, Tool, Vec3};
+///
+/// let tool = Tool {
+///     mass: 0.1,
+///     inertia: Mat3::from_diagonal(Vec3::splat(1e-5)),
+///     center: Vec3::ZERO,
+/// };
+/// let options = CouplingOptions {
+///     max_force: 3.0,
+///     ..CouplingOptions::critically_damped(&tool, 1000.0, 2.0)
+/// };
+/// assert!((options.damping - 20.0).abs() < 1e-4);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingOptions {
     /// Of the spring between the centres, in N/m.

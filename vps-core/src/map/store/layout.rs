@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Voxels along the edge of a cell of a sparse [`Store`](crate::Store).
+/// Voxels along the edge of a cell of a sparse [`Store`](crate::raw::Store).
 pub const CELL_EDGE_VOXELS: u32 = 8;
 
 /// Values of a refined cell besides those of its bricks: 3 along each edge, 4 voxels apart.

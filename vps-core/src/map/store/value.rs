@@ -6,7 +6,7 @@ use wide::{f32x4, i32x4};
 use crate::simd::LANES;
 use crate::storage::Storage;
 
-/// The values of a [`Store`](crate::Store).
+/// The values of a [`Store`](crate::raw::Store).
 #[derive(Clone, Debug)]
 pub enum Values<'a> {
     /// 16-bit integers: layers, or distances in steps of λ (eq. 1).

@@ -33,6 +33,19 @@ use crate::query::contact::Contact;
 /// the normals of a contact and of the deepest one, down to a quarter: points close to an edge come
 /// before those on it, whose normals belong to neither side. Of contacts with equal scores the
 /// first is selected.
+///
+/// ```
+/// use vps_core::{ContactManifold, HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+///
+/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+/// let ground = HalfSpace::new(Vec3::Y);
+/// let query = Query::new(&tree, &ground, Pose3::IDENTITY);
+/// let manifold: ContactManifold<4> = query.manifold();
+/// assert_eq!(manifold.contacts().len(), 1);
+/// # Ok::<(), vps_core::TreeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactManifold<const N: usize> {
     contacts: [Contact; N],

@@ -28,6 +28,18 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// One search finds the deepest contact and those of sufficient weight. If these are too few, a
     /// second search finds those of low weight. Contacts of even lower weight, or that do not fit
     /// on the stack, are searched for one by one as far as they could have a higher score.
+    ///
+    /// ```
+    /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
+    ///
+    /// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
+    /// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
+    /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
+    /// let ground = HalfSpace::new(Vec3::Y);
+    /// let manifold = Query::new(&tree, &ground, Pose3::IDENTITY).with_prediction(1.0).manifold::<4>();
+    /// assert_eq!(manifold.contacts()[0].point_index, 0);
+    /// # Ok::<(), vps_core::TreeError>(())
+    /// ```
     pub fn manifold<const N: usize>(&self) -> ContactManifold<N> {
         // Most bodies of a scene are apart: the buffer is not initialised for them.
         if !self.may_touch() {

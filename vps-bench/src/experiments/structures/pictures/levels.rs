@@ -18,7 +18,7 @@ pub(super) fn points(subject: &Subject<'_>) -> Result<FigureSheet, String> {
         // Smaller on levels with more points.
         let radius = 0.075 * longest * (clusters.len() as f32).powf(-0.3);
         for cluster in clusters {
-            let point = tree.point(cluster.parent_point as usize);
+            let point = tree.point(cluster.parent_point() as usize);
             canvas.ball(view, point, radius, color);
         }
     })
@@ -26,7 +26,7 @@ pub(super) fn points(subject: &Subject<'_>) -> Result<FigureSheet, String> {
 
 pub(super) fn spheres(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     panels(subject, "spheres", 1.6, |canvas, view, clusters, color| {
-        let ball = |c: &Cluster| (Vec3::from_array(c.center), c.radius, color);
+        let ball = |c: &Cluster| (c.center(), c.radius(), color);
         canvas.translucent_balls(view, clusters.iter().map(ball).collect(), 0.16);
     })
 }

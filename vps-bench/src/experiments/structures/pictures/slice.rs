@@ -1,7 +1,7 @@
 //! A slice through the centre of the map, and its stored voxels.
 
-use vps_core::store::CELL_EDGE_VOXELS;
-use vps_core::{DistanceField, Store, Vec3, Voxelmap};
+use vps_core::raw::{CELL_EDGE_VOXELS, Store};
+use vps_core::{DistanceField, Vec3, Voxelmap};
 
 use super::{Panels, Subject, TEXT};
 use crate::figures::render::colors::{self, Color};

@@ -118,16 +118,15 @@ impl Traversal {
             let mut below = Vec::new();
             for index in current {
                 let cluster = tree.level(level)[index];
-                let center = pose * Vec3::from_array(cluster.center);
-                let reaches = field.penetration_bound(center, cluster.radius) >= 0.0;
+                let center = pose * cluster.center();
+                let reaches = field.penetration_bound(center, cluster.radius()) >= 0.0;
                 seen.spheres.push(Tested {
                     cluster,
                     level,
                     reaches,
                 });
                 if reaches {
-                    below
-                        .extend((cluster.first..cluster.first + cluster.count).map(|i| i as usize));
+                    below.extend(cluster.children().map(|i| i as usize));
                 }
             }
             current = below;
@@ -153,8 +152,8 @@ impl Traversal {
         let chosen = chosen.filter(|tested| level == 0 || tested.level == level);
         let ball = |tested: &Tested| {
             let color = if tested.reaches { PASSED } else { colors::GREY };
-            let center = pose * Vec3::from_array(tested.cluster.center);
-            (center, tested.cluster.radius, color)
+            let center = pose * tested.cluster.center();
+            (center, tested.cluster.radius(), color)
         };
         canvas.translucent_balls(view, chosen.map(ball).collect(), 0.03);
         for &(point, is_inside) in &self.points {
