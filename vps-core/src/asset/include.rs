@@ -26,6 +26,13 @@ pub struct Aligned<B: ?Sized>(pub B);
 ///
 /// let tool = Asset::from_bytes(TOOL)?;
 /// ```
+///
+/// Any file will do:
+///
+/// ```
+/// let bytes = vps_core::include_asset!(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"));
+/// assert!(bytes.as_ptr().addr().is_multiple_of(64));
+/// ```
 #[macro_export]
 macro_rules! include_asset {
     ($path:expr $(,)?) => {{
