@@ -48,8 +48,8 @@
 //!   coordinates of the mesh less [`Asset::origin`], which is zero unless the mesh lies far away.
 //! * **Units** are SI: metres, newtons per metre of stiffness one, newton metres.
 //!
-//! Most users need no more than the items of this page. [`raw`] has what assets are made of, for those
-//! who build them or write fields that answer several points at a time.
+//! Most users need the items of this page alone. [`raw`] has the parts of assets, for programs that build
+//! them, and the means to evaluate a field at several points at a time.
 //!
 //! # Features
 //! `std` (default) uses mathematics of the standard library, `libm` that of the `libm` crate; one

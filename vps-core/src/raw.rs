@@ -1,14 +1,15 @@
-//! What assets and fields are made of. **Unstable**: any version may change it.
+//! Parts of assets, and the evaluation of fields at several points at a time. **Unstable**: any version
+//! may change them.
 //!
 //! * **Building assets**: [`TreeParts`] and [`VoxelmapParts`] are the arguments of
 //!   [`PointSphereTree::from_parts`](crate::PointSphereTree::from_parts) and
 //!   [`Voxelmap::from_parts`](crate::Voxelmap::from_parts), which check them. Their arrays are
 //!   [`Storage`], borrowed or owned.
 //! * **Fast fields**: a [`DistanceField`](crate::DistanceField) may override three provided methods that
-//!   answer [`LANES`] points or [`Discs`] at a time: `penetrations`, `penetrations_and_gradients` and
+//!   evaluate [`LANES`] points or [`Discs`] at a time: `penetrations`, `penetrations_and_gradients` and
 //!   `penetration_bounds`. The documentation of the trait leaves them out, since the number of lanes may
-//!   change. They are methods of that trait, and not of one of their own, so that a query of any field
-//!   calls the field's own version where there is one, without a branch.
+//!   change. They belong to that trait and not to one of their own, so that a query is compiled with the
+//!   field's own version, or with the default, for any field.
 
 pub use crate::field::Discs;
 pub use crate::map::store::{

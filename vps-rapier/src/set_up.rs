@@ -1,4 +1,4 @@
-//! What a world needs for VPS shapes.
+//! Settings of a world for VPS shapes.
 
 use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::geometry::NarrowPhase;
@@ -49,8 +49,8 @@ pub fn set_up(narrow_phase: &mut NarrowPhase, parameters: &mut IntegrationParame
     parameters.normalized_max_linear_velocity = (max_speed / length_unit).min(Real::MAX);
 }
 
-/// A narrow phase with the default [`VpsDispatcher`] before parry's own, and nothing else of
-/// [`set_up`]. Without it VPS shapes collide with nothing, see [`check`](crate::check).
+/// A narrow phase with the default [`VpsDispatcher`] before parry's own: the first of the three settings
+/// of [`set_up`]. Without it VPS shapes collide with nothing, see [`check`](crate::check).
 pub fn narrow_phase() -> NarrowPhase {
     NarrowPhase::with_query_dispatcher(VpsDispatcher::default().chain(DefaultQueryDispatcher))
 }

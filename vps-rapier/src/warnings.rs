@@ -13,10 +13,10 @@ pub(crate) const MAX_PREDICTION: f32 = 0.5;
 /// speed of a body with soft CCD.
 const MAX_MOTION: f32 = 0.1;
 
-/// Whether a dispatcher of ours was ever asked.
+/// Whether a query has ever reached a dispatcher of ours.
 static IS_CONNECTED: AtomicBool = AtomicBool::new(false);
 
-/// Whether warnings are suppressed, while pairs are asked whose contacts are not used.
+/// Whether warnings are suppressed, during queries whose contacts are not used.
 static IS_SUPPRESSED: AtomicBool = AtomicBool::new(false);
 
 /// Whether the warning of a missing dispatcher was given.
@@ -33,19 +33,20 @@ pub(crate) fn without_warnings<T>(action: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Called by our dispatcher whenever it is asked.
+/// Called by our dispatcher in every query.
 pub(crate) fn set_connected() {
     if !IS_CONNECTED.load(Ordering::Relaxed) {
         IS_CONNECTED.store(true, Ordering::Relaxed);
     }
 }
 
-/// Called by a VPS shape that parry's own dispatcher asks for its faces. Our dispatcher prevents that,
+/// Called by a VPS shape when parry's own dispatcher requests its faces. Our dispatcher prevents that,
 /// so the likely reason is a world without it.
 pub(crate) fn warn_if_disconnected() {
     if !IS_CONNECTED.load(Ordering::Relaxed) {
         warn(&WARNED_OF_DISPATCHER, || {
-            "parry's own dispatcher was asked for contacts of a VPS shape and has none".into()
+            "parry's own dispatcher got a query about a VPS shape, for which it finds no contacts"
+                .into()
         });
     }
 }

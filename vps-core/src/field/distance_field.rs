@@ -13,8 +13,8 @@ use crate::simd::{LANES, Points};
 /// [functions](crate::FieldFn) implement it; [`conformance`](crate::conformance) holds the checks
 /// an implementation must pass.
 ///
-/// Queries ask for several points at a time, which by default are taken one by one. [`raw`](crate::raw)
-/// tells how a field answers them together, which is faster.
+/// Queries evaluate several points at a time, by default one after the other. [`raw`](crate::raw) describes
+/// how a field evaluates them together, which is faster.
 ///
 /// ```
 /// use vps_core::{Aabb, DistanceField, Vec3, conformance};

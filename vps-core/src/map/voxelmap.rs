@@ -43,7 +43,7 @@ pub const CURVATURE_UNKNOWN: u8 = u8::MAX;
 /// Steps of a curvature bound per voxel size: a step is s / 127.
 pub const CURVATURE_STEPS: f32 = 127.0;
 
-/// What a [`Voxelmap`] consists of, for [`Voxelmap::from_parts`].
+/// The parts of a [`Voxelmap`], for [`Voxelmap::from_parts`].
 #[derive(Clone, Debug)]
 pub struct VoxelmapParts<'a> {
     /// The grid, in the field frame.
@@ -65,7 +65,7 @@ pub struct VoxelmapParts<'a> {
 }
 
 impl<'a> Voxelmap<'a> {
-    /// A map of its [parts](crate::raw::VoxelmapParts), for those who build maps.
+    /// A map from its [parts](crate::raw::VoxelmapParts), for builders of maps.
     ///
     /// # Errors
     /// When the parts are inconsistent.

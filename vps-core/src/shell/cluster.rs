@@ -6,8 +6,8 @@ use bytemuck::{Pod, Zeroable};
 use glamx::Vec3;
 use wide::f32x4;
 
-/// One cluster of a [`PointSphereTree`](crate::PointSphereTree) (eq. 6). Those who build trees make it
-/// of its [parts](crate::raw::ClusterParts).
+/// One cluster of a [`PointSphereTree`](crate::PointSphereTree) (eq. 6). Builders of trees make it from
+/// its [parts](crate::raw::ClusterParts).
 ///
 /// ```
 /// use vps_core::{PointSphereTree, Vec3};
@@ -72,7 +72,7 @@ impl From<ClusterParts> for Cluster {
     }
 }
 
-/// What a [`Cluster`] consists of, as in a `.vps` file. The tree checks it.
+/// The parts of a [`Cluster`], as in a `.vps` file. The tree checks them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ClusterParts {

@@ -35,7 +35,7 @@ pub struct PointSphereTree<'a> {
     origin_distance_bound: f32,
 }
 
-/// What a [`PointSphereTree`] consists of, for [`PointSphereTree::from_parts`].
+/// The parts of a [`PointSphereTree`], for [`PointSphereTree::from_parts`].
 #[derive(Clone, Debug)]
 pub struct TreeParts<'a> {
     /// Points in metres in the shell frame, in the order of the leaves.
@@ -51,7 +51,7 @@ pub struct TreeParts<'a> {
 }
 
 impl<'a> PointSphereTree<'a> {
-    /// A tree of its [parts](crate::raw::TreeParts), for those who build trees.
+    /// A tree from its [parts](crate::raw::TreeParts), for builders of trees.
     ///
     /// Checks all requirements of queries, in one pass over the points for each level.
     ///

@@ -1,6 +1,6 @@
 //! Queries about a pair of shapes, at least one of them a VPS shape.
 //!
-//! A [`pair`] is asked as up to two shells in fields ([`shell_in_field`]) and, against a shape of
+//! A [`pair`] is queried as up to two shells in fields ([`shell_in_field`]) and, against a shape of
 //! parry, also as points on the edges of that shape in the voxelmap ([`edge_sampler`], with the points
 //! of [`edges`] and their [`sample_id`]s). All of them answer with [`pair_contact`]s. [`cast`] moves a pair along a [`motion`].
 

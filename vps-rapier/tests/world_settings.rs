@@ -1,5 +1,5 @@
-//! A world without the dispatcher, or with tolerances that are too large, is detected. The only test of its process, since each process warns
-//! once.
+//! A world without the dispatcher, or with tolerances that are too large, is detected. The only test of
+//! its process, since each process warns once.
 
 mod support;
 
