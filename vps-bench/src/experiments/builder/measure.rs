@@ -6,7 +6,6 @@ use std::time::Instant;
 use mesh_to_sdf::{SignMethod, Topology, generate_grid_sdf};
 use serde::Serialize;
 use vps_build::{BuildOptions, Density, Mesh};
-use vps_core::raw::encode;
 use vps_core::{Asset, Grid};
 
 use super::errors::{Reference, wrong_spheres};
@@ -220,7 +219,7 @@ impl Row {
             points: Some(asset.tree.point_count()),
             map_bytes: Some(map.store().byte_len()),
             tree_bytes: Some(asset.tree.byte_len()),
-            file_bytes: Some(encode(asset).len()),
+            file_bytes: Some(asset.to_bytes().len()),
             quantization_voxels: Some(f64::from(map.sigma()) / voxel),
             near_bound_voxels: Some(f64::from(bounds.in_band) / voxel),
             far_bound_voxels: Some(f64::from(bounds.beyond) / voxel),
