@@ -125,7 +125,7 @@ impl Edges {
                             ..sample
                         });
                     };
-                    let element = elements.voxel(voxel.grid_coords.to_array());
+                    let element = elements.voxel(voxel.grid_coords.to_array().map(|c| c as u64));
                     moved.cuboid(&half, element, radius, &mut to_shape);
                 }
             }
@@ -368,6 +368,12 @@ mod tests {
         found
     }
 
+    // Coordinates of rapier's voxels have 32 or 64 bits.
+    #[allow(clippy::useless_conversion)]
+    fn ivector([x, y, z]: [i32; 3]) -> IVector {
+        IVector::new(x.into(), y.into(), z.into())
+    }
+
     /// A cone with more edges than a convex polyhedron usually has.
     fn hull(corners: u32) -> SharedShape {
         let ring = (0..corners).map(|i| {
@@ -402,10 +408,10 @@ mod tests {
     #[test]
     fn samples_of_all_parts_of_a_compound_have_ids_of_their_own() {
         let heights = SharedShape::heightfield(
-            Array2::new(4, 4, (0..16).map(|i| Real::from(i as u8 % 3)).collect()),
+            Array2::new(4, 4, (0..16_u8).map(|i| Real::from(i % 3)).collect()),
             Vector::ONE,
         );
-        let grid: Vec<_> = (0..5).map(|i| IVector::new(i, -i, i * i)).collect();
+        let grid: Vec<_> = (0..5).map(|i| ivector([i, -i, i * i])).collect();
         let voxels = SharedShape::voxels(Vector::splat(0.1), &grid);
         let parts = [
             hull(100),
@@ -435,22 +441,21 @@ mod tests {
             others in prop::collection::vec(
                 prop::array::uniform3(prop_oneof![
                     -2..3_i32,
-                    Just(127), Just(128), Just(1 << 7), Just(1 << 12), Just((1 << 13) - 1),
+                    Just(127), Just(128), Just(1 << 12), Just((1 << 13) - 1),
                 ]),
                 1..30,
             ),
             steps in 1_u16..40,
         ) {
-            let first = IVector::from(first);
-            let mut grid: Vec<_> = others.into_iter().map(|o| first + IVector::from(o)).collect();
+            let first = ivector(first);
+            let mut grid: Vec<_> = others.into_iter().map(|o| first + ivector(o)).collect();
             grid.retain(|c| (*c - first).min_element() >= 0);
             grid.push(first);
             grid.sort_by_key(|c| c.to_array());
             grid.dedup();
-            let size = 1.0;
-            let voxels = SharedShape::voxels(Vector::splat(size), &grid);
+            let voxels = SharedShape::voxels(Vector::ONE, &grid);
             let center = core_vector(voxels.compute_local_aabb().center());
-            let found = samples(&voxels, center, 1e4, 1.0 / f32::from(steps));
+            let found = samples(&voxels, center, 1e4, 1.0 / (f32::from(steps) - 0.5));
             prop_assert_eq!(found.len(), grid.len() * 12 * (usize::from(steps) + 1));
         }
 

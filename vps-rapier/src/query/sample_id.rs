@@ -50,9 +50,9 @@ impl Elements {
         Element(self.number(number))
     }
 
-    /// The voxel of given coordinates in its grid.
-    pub(crate) fn voxel(self, coordinates: [i32; 3]) -> Element {
-        let [x, y, z] = coordinates.map(|c| (c as u32 & ((1 << VOXEL_BITS) - 1)).into());
+    /// The voxel of given coordinates in its grid, in two's complement.
+    pub(crate) fn voxel(self, coordinates: [u64; 3]) -> Element {
+        let [x, y, z] = coordinates.map(|c| c & ((1 << VOXEL_BITS) - 1));
         self.element(x | y << VOXEL_BITS | z << (2 * VOXEL_BITS))
     }
 
