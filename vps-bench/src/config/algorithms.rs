@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use plotters::style::RGBColor;
 use serde::Deserialize;
-use vps_compare::Algorithm as Method;
+use vps_compare::{Algorithm as Method, Vps};
 
 use crate::config::toml_file::{ConfigError, read_toml};
 
@@ -86,6 +86,14 @@ impl Algorithms {
             let (path, keys) = (self.path.display(), Method::KEYS.join(", "));
             format!("no algorithm `{name}` in {path}, and it is none of {keys}")
         })
+    }
+
+    /// The parameters of an algorithm of the method `vps`.
+    pub(crate) fn vps(&self, name: &str) -> Result<&Vps, String> {
+        match &self.get(name)?.method {
+            Method::Vps(vps) => Ok(vps),
+            _ => Err(format!("`{name}` is not of the method vps")),
+        }
     }
 }
 

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::SharedShape;
 use serde::{Deserialize, Serialize};
-use vps_build::{BuildOptions, Mesh, PointCount, Resolution};
+use vps_build::{BuildOptions, Density, Mesh, PointCount, Resolution};
 use vps_core::Asset;
 use vps_rapier::{Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
 
@@ -39,6 +39,9 @@ pub struct Vps {
     pub ground_voxel_size_m: Option<f64>,
     /// Outer layers of voxels around a box; 4 without it.
     pub ground_margin: Option<u32>,
+    /// Whether every voxel of a box is stored; otherwise its size decides.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub ground_is_dense: bool,
     /// Voxels along the longest side of a mesh, if there is no [`Self::voxel_size_m`]. Without
     /// either the builder chooses.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,6 +69,7 @@ impl Default for Vps {
             segments: None,
             ground_voxel_size_m: None,
             ground_margin: None,
+            ground_is_dense: false,
             voxels: None,
         }
     }
@@ -120,14 +124,19 @@ impl Vps {
         }
     }
 
-    /// The build options of a box that is a voxelmap.
-    fn box_options(&self) -> Option<BuildOptions> {
+    /// The build options of a box that is a voxelmap; `None` if it is an exact cuboid.
+    pub fn box_options(&self) -> Option<BuildOptions> {
         let default = BuildOptions::default();
         self.ground_voxel_size_m.map(|size| BuildOptions {
             resolution: Resolution::VoxelSize(size),
             margin: self.ground_margin.unwrap_or(default.margin),
             // A box is never the shell.
             points: PointCount::About(100),
+            density: if self.ground_is_dense {
+                Density::Dense
+            } else {
+                default.density
+            },
             ..default
         })
     }

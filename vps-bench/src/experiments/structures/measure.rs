@@ -4,7 +4,7 @@ use serde::Serialize;
 use vps_build::BuildOptions;
 use vps_core::{Asset, Cluster};
 
-use super::{Settings, clustering, vps};
+use super::{Settings, clustering};
 use crate::experiments::experiment::Measurement;
 use crate::experiments::shared::timed_build::timed_build;
 use crate::experiments::shared::voxelmaps::VOXELMAPS;
@@ -50,7 +50,7 @@ pub(super) fn run(
     context: &Context,
 ) -> Result<Measurement, String> {
     let body = context.body(&settings.model, settings.scale)?;
-    let whole = vps(&context.algorithms, &job.algorithm)?.build_options();
+    let whole = context.algorithms.vps(&job.algorithm)?.build_options();
     let map = VOXELMAPS.iter().find(|(case, _)| *case == job.case);
     let options = match (map, clustering(&job.case, job.seed)) {
         (Some((_, map)), _) => map.options(whole),

@@ -11,9 +11,7 @@ use std::path::Path;
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
 use vps_build::Clustering;
-use vps_compare::{Algorithm, Vps};
 
-use crate::config::algorithms::Algorithms;
 use crate::config::validate::positive;
 use crate::data::tables::Tables;
 use crate::error::Error;
@@ -70,14 +68,6 @@ impl Settings {
     /// The algorithm with the most points.
     fn finest(&self) -> &str {
         self.shells.last().map_or("", String::as_str)
-    }
-}
-
-/// The settings of an algorithm that must be VPS.
-fn vps<'l>(algorithms: &'l Algorithms, name: &str) -> Result<&'l Vps, String> {
-    match &algorithms.get(name)?.method {
-        Algorithm::Vps(vps) => Ok(vps),
-        _ => Err(format!("structures.shells: `{name}` has no pointshell")),
     }
 }
 

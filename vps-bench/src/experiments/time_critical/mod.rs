@@ -9,7 +9,6 @@ use std::time::Duration;
 
 use polars::prelude::DataFrame;
 use serde::{Deserialize, Serialize};
-use vps_compare::Algorithm;
 use vps_rapier::{Sampling, VpsShape};
 
 use crate::config::validate::{not_negative, positive};
@@ -170,9 +169,7 @@ impl Experiment for Settings {
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
-        let Algorithm::Vps(method) = &context.algorithms.get(&job.algorithm)?.method else {
-            return Err("only the method vps has a time-critical query".into());
-        };
+        let method = context.algorithms.vps(&job.algorithm)?;
         let limit = job.find_case(self.limits(), |limit| limit.case())?;
         let body = context.body(&self.model, self.scale)?;
         let ready = context.prepare_on_box(&job.algorithm, &body, self.ground_extents_m)?;

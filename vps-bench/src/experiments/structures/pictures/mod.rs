@@ -15,7 +15,7 @@ use std::sync::Arc;
 use vps_build::{BuildOptions, Mesh};
 use vps_core::{Asset, Pose3, Vec3};
 
-use super::{Settings, vps};
+use super::Settings;
 use crate::data::number_format::group_digits;
 use crate::figures::render::canvas::Canvas;
 use crate::figures::render::colors::Color;
@@ -111,7 +111,7 @@ impl<'s> Subject<'s> {
             cached(
                 context,
                 &body.mesh,
-                &vps(&context.algorithms, name)?.build_options(),
+                &context.algorithms.vps(name)?.build_options(),
             )
         };
         let (coarse, fine) = (
