@@ -16,7 +16,7 @@ build:
 fetch: build
     {{ bench }} fetch
 
-# Run every experiment, write the report, put its tables into the README and check the claims
+# Run the experiments of the paper, write the report, put its tables into the README and check the claims
 reproduce-paper: build
     {{ bench }} reproduce --splice README.md
 
@@ -60,9 +60,6 @@ no-std:
     cargo run --locked --quiet -p vps-build --example torus -- target/torus.vps
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
-# Speed of queries beside parry's, into reports/queries
-query-report: fetch
-    cargo bench --locked -p vps-compare --bench queries
 
 # Instructions and cache misses of queries, into reports/queries (needs valgrind)
 query-profile: fetch

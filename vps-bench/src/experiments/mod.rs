@@ -8,6 +8,7 @@ pub(crate) mod builder;
 pub(crate) mod drop;
 pub(crate) mod experiment;
 pub(crate) mod haptics;
+pub(crate) mod queries;
 pub(crate) mod registry;
 pub(crate) mod replay;
 pub(crate) mod scaling;

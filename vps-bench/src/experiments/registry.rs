@@ -8,7 +8,7 @@ use crate::config::toml_file::{ConfigError, read_toml};
 use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
-    accuracy, behaviour, bounce, builder, drop, haptics, replay, scaling, stack, structures,
+    accuracy, behaviour, bounce, builder, drop, haptics, queries, replay, scaling, stack, structures,
     time_critical,
 };
 use crate::report::claims::Claim;
@@ -67,6 +67,7 @@ registry!(
     behaviour,
     haptics,
     builder,
+    queries,
 );
 
 fn yes() -> bool {

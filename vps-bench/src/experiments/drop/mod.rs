@@ -107,13 +107,17 @@ impl Settings {
             .map(|s| (s * f64::from(frequency)).round() as u32)
     }
 
+    pub(super) fn body(&self, context: &Context) -> Result<Rc<Body>, String> {
+        context.body(&self.model, self.scale)
+    }
+
     /// The body, and an algorithm prepared for it and the ground.
     pub(super) fn prepare(
         &self,
         context: &Context,
         algorithm: &str,
     ) -> Result<(Rc<Body>, Rc<PreparedAlgorithm>), String> {
-        let body = context.body(&self.model, self.scale)?;
+        let body = self.body(context)?;
         let ready = context.prepare_on_box(algorithm, &body, self.ground_extents_m)?;
         Ok((body, ready))
     }
@@ -213,7 +217,7 @@ impl Experiment for Settings {
     }
 
     fn identity(&self, context: &Context) -> Result<String, String> {
-        Ok(context.body(&self.model, self.scale)?.identity.clone())
+        Ok(self.body(context)?.identity.clone())
     }
 
     fn run(&self, job: &Job, context: &Context) -> Result<Measurement, String> {
