@@ -56,13 +56,16 @@ pub(super) enum Command {
     },
     /// Judge the claims; fails if a verdict is not the expected one, except in quick runs
     Check { names: Vec<String> },
-    /// Times in folder B as ratios of those in folder A, such as of two machines
+    /// Times and instructions in folder B as ratios of those in folder A, such as of two machines
     Compare {
         a: PathBuf,
         b: PathBuf,
         /// A row a time, for other programs
         #[arg(long)]
         csv: bool,
+        /// Fail if one in B differs from that in A by more than this
+        #[arg(long, value_name = "PERCENT")]
+        within: Option<f64>,
     },
     /// Fetch, run and report everything, then check the claims; a shard of the jobs gives no report
     /// until the other shards are there

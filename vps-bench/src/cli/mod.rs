@@ -40,7 +40,7 @@ pub(crate) fn execute(cli: &Cli) -> Result<Vec<String>, Error> {
             check,
         } => report::report(&project, names, splice.as_deref(), *check),
         Command::Check { names } => check::check(&project, names),
-        Command::Compare { a, b, csv } => compare::compare(a, b, *csv),
+        Command::Compare { a, b, csv, within } => compare::compare(a, b, *csv, *within),
         Command::Reproduce { selection, splice } => {
             reproduce::reproduce(&project, selection.selection(), splice.as_deref())
         }

@@ -1,4 +1,4 @@
-//! Times in two folders of reports, such as those of two machines, as ratios.
+//! Times and instructions in two folders of reports, such as those of two machines, as ratios.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -30,7 +30,7 @@ const NOT_COMPARED: [&str; 12] = [
     "quick_orientations",
 ];
 
-/// One time in both folders.
+/// One time or number of instructions in both folders.
 #[derive(Serialize)]
 pub(crate) struct Ratio {
     experiment: String,
@@ -154,12 +154,26 @@ fn starts(results: &Results) -> BTreeMap<String, BTreeMap<String, String>> {
     starts
 }
 
-/// The ratios of all times whose rows are in both.
+/// The ratios that differ from 1 by more than a percentage, a line each.
+pub(crate) fn beyond(comparisons: &[Comparison], percent: f64) -> Vec<String> {
+    let ratios = comparisons.iter().flat_map(Comparison::shown);
+    let ratios = ratios.filter(|r| (100.0 * (r.b_by_a - 1.0)).abs() > percent);
+    let line = |r: &Ratio| {
+        let change = 100.0 * (r.b_by_a - 1.0);
+        format!(
+            "{}: {}: {} is {} in A and {} in B: {change:+.2} %",
+            r.experiment, r.row, r.column, r.a, r.b
+        )
+    };
+    ratios.map(line).collect()
+}
+
+/// The ratios of all costs whose rows are in both.
 fn ratios(name: &str, a: &Results, b: &Results) -> Vec<Ratio> {
     let mut ratios = Vec::new();
     for (table, of_a) in a.tables.iter().filter(|(table, _)| *table != "jobs") {
-        let of_b = b.tables.get(table).and_then(times);
-        let (Some(of_a), Some(of_b)) = (times(of_a), of_b) else {
+        let of_b = b.tables.get(table).and_then(costs);
+        let (Some(of_a), Some(of_b)) = (costs(of_a), of_b) else {
             continue;
         };
         for ((row, column), a) in of_a {
@@ -180,16 +194,16 @@ fn ratios(name: &str, a: &Results, b: &Results) -> Vec<Ratio> {
     ratios
 }
 
-/// The times of a table by the text of their row and by column; `None` if several rows have the
-/// same text, as in a course over time.
-fn times(table: &DataFrame) -> Option<Vec<((String, String), f64)>> {
+/// The times and instructions of a table by the text of their row and by column; `None` if several
+/// rows have the same text, as in a course over time.
+fn costs(table: &DataFrame) -> Option<Vec<((String, String), f64)>> {
     let is_text = |column: &&Column| column.dtype() == &DataType::String;
-    let is_time = |name: &str| {
+    let is_cost = |name: &str| {
         name.split('_')
-            .any(|part| ["ns", "us", "ms"].contains(&part))
+            .any(|part| ["ns", "us", "ms", "instructions"].contains(&part))
     };
     let (texts, numbers): (Vec<_>, Vec<_>) = table.columns().iter().partition(is_text);
-    let mut times = Vec::new();
+    let mut costs = Vec::new();
     let mut known = BTreeSet::new();
     for row in rows(table) {
         let text: Vec<_> = texts.iter().map(|c| row.text(c.name())).collect();
@@ -200,14 +214,14 @@ fn times(table: &DataFrame) -> Option<Vec<((String, String), f64)>> {
         for column in numbers
             .iter()
             .map(|c| c.name())
-            .filter(|name| is_time(name))
+            .filter(|name| is_cost(name))
         {
-            if let Some(time) = row.number(column).filter(|time| *time > 0.0) {
-                times.push(((text.clone(), column.to_string()), time));
+            if let Some(cost) = row.number(column).filter(|cost| *cost > 0.0) {
+                costs.push(((text.clone(), column.to_string()), cost));
             }
         }
     }
-    Some(times)
+    Some(costs)
 }
 
 /// For people: a Markdown table for each experiment.
@@ -226,7 +240,7 @@ pub(crate) fn text(comparisons: &[Comparison]) -> String {
     text
 }
 
-/// For machines: a CSV row for each time.
+/// For machines: a CSV row for each ratio.
 pub(crate) fn csv(comparisons: &[Comparison]) -> Result<String, Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for ratio in comparisons.iter().flat_map(|c| &c.ratios) {
@@ -239,11 +253,15 @@ pub(crate) fn csv(comparisons: &[Comparison]) -> Result<String, Error> {
 
 impl Comparison {
     /// Extremes are left out: they depend more on the system than on the algorithm.
-    fn table(&self) -> Table {
-        let head = ["table", "row", "time", "A", "B", "B / A"];
-        let mut table = Table::new("Times of B against those of A", &head);
+    fn shown(&self) -> impl Iterator<Item = &Ratio> {
         let is_extreme = |r: &&Ratio| r.column.ends_with("_min") || r.column.ends_with("_max");
-        for ratio in self.ratios.iter().filter(|r| !is_extreme(r)) {
+        self.ratios.iter().filter(move |r| !is_extreme(r))
+    }
+
+    fn table(&self) -> Table {
+        let head = ["table", "row", "column", "A", "B", "B / A"];
+        let mut table = Table::new("B against A", &head);
+        for ratio in self.shown() {
             table.push([
                 ratio.table.clone(),
                 ratio.row.clone(),
@@ -281,14 +299,16 @@ mod tests {
     }
 
     #[test]
-    fn times_are_those_of_rows_told_apart_by_text() {
+    fn costs_are_those_of_rows_told_apart_by_text() {
         let table = df!(
             "case" => ["x", "x"], "algorithm" => ["a", "b"], "query_us_mean" => [Some(1.5), None],
-            "fell" => [1.0, 2.0], "linear_velocity_m_s" => [1.0, 2.0]
+            "fell" => [1.0, 2.0], "linear_velocity_m_s" => [1.0, 2.0],
+            "instructions" => [None, Some(7.0)]
         );
         let key = ("x a".to_owned(), "query_us_mean".to_owned());
-        assert_eq!(times(&table.unwrap()).unwrap(), [(key, 1.5)]);
+        let instructions = (("x b".to_owned(), "instructions".to_owned()), 7.0);
+        assert_eq!(costs(&table.unwrap()).unwrap(), [(key, 1.5), instructions]);
         let course = df!("algorithm" => ["a", "a"], "step" => [1.0, 2.0], "query_us" => [1.0, 2.0]);
-        assert!(times(&course.unwrap()).is_none());
+        assert!(costs(&course.unwrap()).is_none());
     }
 }
