@@ -61,13 +61,10 @@ no-std:
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
 
-# Instructions and cache misses of queries, into reports/queries (needs valgrind)
-query-profile: fetch
-    cargo run --locked --release --quiet -p vps-compare --example query_profile
-
-# Fail if queries take other instructions than reports/queries/profile.csv says, by more than 2 % (needs valgrind)
+# Fail if queries take other instructions than reports/query_profile says, by more than 2 % (needs valgrind)
 gate: fetch
-    cargo run --locked --release --quiet -p vps-compare --example query_profile -- gate
+    {{ bench }} run query_profile --out target/gate
+    {{ bench }} compare reports target/gate --within 2
 
 # Random bytes for the readers and the builder, for the given seconds each (needs nightly and cargo-fuzz)
 fuzz seconds="100": build

@@ -3,12 +3,10 @@
 //! `cargo bench -p vps-compare` needs no model. What is reported is measured by
 //! `vps-bench run queries`.
 
-use std::sync::Arc;
-
 use criterion::Criterion;
 use rapier3d::math::{Pose, Rotation, Vector};
-use vps_build::{BuildOptions, Mesh, build, models};
-use vps_compare::{Algorithm, CollisionAlgorithm, Contacts, Ground, Scene};
+use vps_build::models;
+use vps_compare::{Algorithm, Contacts, Ground, Scene};
 
 /// Edge lengths of the box in metres.
 const BOX: [f64; 3] = [2.0, 0.2, 2.0];
@@ -22,10 +20,6 @@ fn main() {
         body: &body,
         ground: Ground::Cuboid(BOX),
     };
-    let assets = |mesh: &Mesh, options: &BuildOptions| {
-        let built = build(mesh, options, &|_| ()).map_err(|e| e.to_string())?;
-        Ok(Arc::new(built.asset))
-    };
     // Rolls on its rim, 1 mm deep.
     let height = (0.5 * BOX[1] + 0.3 * 0.5 - 0.001) as f32;
     let poses: Vec<_> = (0..20)
@@ -35,8 +29,8 @@ fn main() {
         })
         .collect();
     let mut group = criterion.benchmark_group("manifolds");
-    for algorithm in Algorithm::all().filter(Algorithm::is_default) {
-        let prepared = algorithm.prepare_with(&scene, &assets).expect("a closed mesh");
+    for algorithm in Algorithm::all().into_iter().filter(Algorithm::is_in_default_set) {
+        let prepared = algorithm.prepare(&scene).expect("a closed mesh");
         group.bench_function(algorithm.key(), |bencher| {
             bencher.iter(|| {
                 let mut contacts = Contacts::default();

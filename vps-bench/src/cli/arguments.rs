@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::experiments::query_profile::target::{Target, VERB};
 use crate::harness::job::Shard;
 use crate::harness::run::Selection;
 
@@ -67,6 +68,9 @@ pub(super) enum Command {
         #[arg(long, value_name = "PERCENT")]
         within: Option<f64>,
     },
+    /// Execute a query at all poses this many times, to be counted by callgrind
+    #[command(hide = true, name = VERB)]
+    ExecuteQueries { times: u32, target: Target },
     /// Fetch, run and report everything, then check the claims; a shard of the jobs gives no report
     /// until the other shards are there
     Reproduce {

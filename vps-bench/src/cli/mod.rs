@@ -41,6 +41,10 @@ pub(crate) fn execute(cli: &Cli) -> Result<Vec<String>, Error> {
         } => report::report(&project, names, splice.as_deref(), *check),
         Command::Check { names } => check::check(&project, names),
         Command::Compare { a, b, csv, within } => compare::compare(a, b, *csv, *within),
+        Command::ExecuteQueries { times, target } => {
+            target.execute(*times, None)?;
+            Ok(Vec::new())
+        }
         Command::Reproduce { selection, splice } => {
             reproduce::reproduce(&project, selection.selection(), splice.as_deref())
         }

@@ -9,6 +9,7 @@ pub(crate) mod drop;
 pub(crate) mod experiment;
 pub(crate) mod haptics;
 pub(crate) mod queries;
+pub(crate) mod query_profile;
 pub(crate) mod registry;
 pub(crate) mod replay;
 pub(crate) mod scaling;

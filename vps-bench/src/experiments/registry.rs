@@ -8,8 +8,8 @@ use crate::config::toml_file::{ConfigError, read_toml};
 use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
-    accuracy, behaviour, bounce, builder, drop, haptics, queries, replay, scaling, stack, structures,
-    time_critical,
+    accuracy, behaviour, bounce, builder, drop, haptics, queries, query_profile, replay, scaling, stack,
+    structures, time_critical,
 };
 use crate::report::claims::Claim;
 
@@ -59,7 +59,7 @@ registry!(
     drop,
     bounce,
     stack,
-    time_critical,
+    structures, time_critical,
     replay,
     accuracy,
     scaling,
@@ -68,6 +68,7 @@ registry!(
     haptics,
     builder,
     queries,
+    query_profile,
 );
 
 fn yes() -> bool {

@@ -7,6 +7,7 @@ mod compare;
 mod fetch;
 mod haptics;
 mod project;
+mod queries;
 mod report;
 mod resume;
 mod run;
