@@ -59,7 +59,7 @@ registry!(
     drop,
     bounce,
     stack,
-    structures, time_critical,
+    time_critical,
     replay,
     accuracy,
     scaling,
