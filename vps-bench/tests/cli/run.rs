@@ -117,6 +117,25 @@ fn an_algorithm_that_fails_gives_a_row_and_the_rest_goes_on() {
 }
 
 #[test]
+fn an_algorithm_of_the_list_needs_no_entry() {
+    let project = Project::new("key");
+    let fall = "experiments/fall.toml";
+    project.edit(fall, fall, "\"vps_l2\"", "\"convex_decomposition\"");
+    project.succeeds(&["run", "fall", "--quick"]);
+    let names = ["vps", "convex_decomposition", "hull", "trimesh"];
+    let summary = project.read("reports/fall/summary.csv");
+    assert_eq!(column(&summary, "algorithm"), names);
+    project.succeeds(&["report"]);
+    // Its own label in tables, its own colour in figures.
+    let report = project.read("reports/report.md");
+    assert!(report.contains("| convex decomposition |"), "{report}");
+    let figure = project.read("reports/fall/query_time.svg");
+    assert!(figure.to_lowercase().contains("#cc79a7"));
+    // The label of the file goes before.
+    assert!(report.contains("| triangles |") && !report.contains("| triangle mesh |"));
+}
+
+#[test]
 fn another_model_is_another_run() {
     let project = Project::new("model");
     project.succeeds(&["run", "fall", "--quick"]);
