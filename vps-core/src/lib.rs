@@ -59,6 +59,10 @@
 //! With `std` on x86-64, queries use AVX2 and bit manipulation instructions where the processor has
 //! them, with the same results to the bit; without `std` they use the instruction set of the target
 //! (`-C target-cpu`).
+//!
+//! # Targets
+//! Little-endian targets of 32 or 64 bits. A `.vps` file is little-endian and used in place, so the
+//! crate does not compile for a big-endian target.
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -67,6 +71,9 @@
 extern crate alloc;
 #[cfg(test)]
 extern crate std;
+
+#[cfg(target_endian = "big")]
+compile_error!("vps-core needs a little-endian target: the bytes of an asset are used in place");
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,7 +1,7 @@
 //! The `.vps` file: an [`Asset`] as bytes that are used in place.
 //!
-//! All numbers are little-endian. A header of 64 bytes is followed by sections, each starting at
-//! a multiple of 64 bytes, zeros between them:
+//! All numbers are little-endian, as the target must be. A header of 64 bytes is followed by
+//! sections, each starting at a multiple of 64 bytes, zeros between them:
 //!
 //! | bytes | what |
 //! |---|---|

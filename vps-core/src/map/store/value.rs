@@ -68,12 +68,7 @@ impl StoredValue for i16 {
         // One load: the compiler generates slower code for two.
         let mut pair = [0_i16; 2];
         pair.copy_from_slice(&values[first..first + 2]);
-        let both: i32 = bytemuck::cast(pair);
-        if cfg!(target_endian = "big") {
-            both.rotate_left(16)
-        } else {
-            both
-        }
+        bytemuck::cast(pair)
     }
 
     #[inline(always)]
