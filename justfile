@@ -3,6 +3,8 @@
 set shell := ["bash", "-euo", "pipefail", "-c"]
 
 bench := "cargo run --locked --release --quiet -p vps-bench --"
+# Selected together, they are compiled once for all recipes.
+libraries := "--workspace --exclude vps-bench"
 
 # Show this list
 default:
@@ -43,21 +45,23 @@ test-long times="50":
 # All tests, with new random cases (proptest keeps the failing cases: commit them)
 test-random: (test-with "")
 
-# The harness is tested with the optimised build the experiments use.
+# The harness is tested with the optimised build the experiments use. Incremental compilation would
+# cost a first build more than it saves.
 [private]
-test-with seed:
-    {{ if seed == "" { "" } else { "PROPTEST_RNG_SEED=" + seed } }} cargo test --locked --workspace --exclude vps-bench
+test-with seed $CARGO_INCREMENTAL="0":
+    {{ if seed == "" { "" } else { "PROPTEST_RNG_SEED=" + seed } }} cargo test --locked {{ libraries }} --tests
+    cargo test --locked {{ libraries }} --doc
     cargo test --locked --release -p vps-bench
-    # Worlds in double precision, on several threads with wide vectors and in files, and the same on
-    # every machine.
-    cargo test --locked -p vps-rapier --no-default-features --features f64,serde,debug-render --tests
+    # Worlds in double precision and the same on every machine, and worlds on several threads with wide
+    # vectors; both in files.
+    cargo test --locked -p vps-rapier --no-default-features --features f64,serde,debug-render,rapier3d-f64/enhanced-determinism --tests
     cargo test --locked -p vps-rapier --features serde,debug-render,rapier3d/parallel,rapier3d/simd8 --test shapes --test rapier_options --test snapshots --test debug_rendering
-    cargo test --locked -p vps-rapier --features rapier3d/enhanced-determinism --test rapier_options
 
 # The core without a standard library and without an allocator, on an asset in constant memory: fails to build if either is needed
 no-std:
     mkdir -p target
-    cargo run --locked --quiet -p vps-build --example torus -- target/torus.vps
+    CARGO_INCREMENTAL=0 cargo build --locked {{ libraries }} --example torus
+    target/debug/examples/torus target/torus.vps
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
 
 
