@@ -8,8 +8,8 @@ use crate::config::toml_file::{ConfigError, read_toml};
 use crate::error::Error;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::{
-    accuracy, behaviour, bounce, builder, drop, haptics, queries, query_profile, replay, scaling, stack,
-    structures, time_critical,
+    accuracy, behaviour, bounce, builder, drop, haptics, queries, query_profile, replay, scaling,
+    stack, structures, time_critical,
 };
 use crate::report::claims::Claim;
 

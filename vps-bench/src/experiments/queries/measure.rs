@@ -8,7 +8,7 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::SharedShape;
 use serde::Serialize;
 use vps_build::{BuildOptions, Clustering, Density, PointCount, Resolution, models};
-use vps_compare::{Contacts, Dispatcher, Prepared};
+use vps_compare::{Contacts, Dispatcher, Memory, Prepared};
 use vps_core::{Asset, DistanceField, PointSphereTree, Query, Work};
 use vps_rapier::{VpsDispatcher, VpsShape};
 
@@ -17,7 +17,6 @@ use super::query_kind::{QueryKind, SegmentEnds};
 use super::{Settings, spacing};
 use crate::experiments::shared::query_field::{QueryField, asset, cuboid, shell, voxelmap_of_box};
 use crate::harness::context::Context;
-use crate::harness::prepare::body_options;
 
 /// One query in one round; columns that do not apply are empty.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -170,7 +169,7 @@ impl Settings {
         };
         let options = BuildOptions {
             clustering,
-            ..body_options(context.algorithms.vps(&self.shell)?)
+            ..context.algorithms.vps(&self.shell)?.build_options()
         };
         let body = self.fall.body(context)?;
         let shell = asset(context, &body.mesh, &options)?.asset;
@@ -191,7 +190,7 @@ impl Settings {
         let spacing_m = self.point_spacings_m.iter().find(|m| spacing(**m) == name);
         let options = BuildOptions {
             points: PointCount::Spacing(*spacing_m.ok_or("no such spacing")?),
-            ..body_options(context.algorithms.vps(&self.shell)?)
+            ..context.algorithms.vps(&self.shell)?.build_options()
         };
         let body = self.fall.body(context)?;
         let shell = asset(context, &body.mesh, &options)?.asset;
@@ -317,6 +316,7 @@ fn timed_manifolds(time_us: f64, is_supported: bool) -> Result<QueryRow, String>
 /// A shape as body and as ground.
 fn in_itself(shape: SharedShape, dispatcher: Arc<Dispatcher>) -> Prepared {
     Prepared {
+        memory: Memory::of_parry(&*shape),
         body: shape.clone(),
         ground: shape,
         dispatcher,

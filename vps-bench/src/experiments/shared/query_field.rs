@@ -4,7 +4,6 @@ use vps_build::{BuildOptions, CachedAsset, Density, Mesh};
 use vps_core::{Cuboid, Vec3};
 
 use crate::harness::context::Context;
-use crate::harness::prepare::{body_options, ground_options};
 
 /// How a box is a distance field.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -52,7 +51,7 @@ pub(crate) fn shell(
     asset(
         context,
         mesh,
-        &body_options(context.algorithms.vps(algorithm)?),
+        &context.algorithms.vps(algorithm)?.build_options(),
     )
 }
 
@@ -64,7 +63,7 @@ pub(crate) fn voxelmap_of_box(
     extents_m: [f64; 3],
     density: Density,
 ) -> Result<CachedAsset, String> {
-    let options = ground_options(context.algorithms.vps(algorithm)?);
+    let options = context.algorithms.vps(algorithm)?.box_options();
     let options = options.ok_or_else(|| format!("`{algorithm}` has no ground_voxel_size_m"))?;
     let mesh = Mesh::cuboid(extents_m).map_err(|e| e.to_string())?;
     asset(context, &mesh, &BuildOptions { density, ..options })

@@ -1,6 +1,6 @@
 //! Points and spheres by level.
 
-use vps_core::{Cluster, Pose3, Vec3};
+use vps_core::{Cluster, Pose3};
 
 use super::{Panels, Subject, count, draw_mesh};
 use crate::figures::render::canvas::Canvas;
