@@ -37,6 +37,8 @@
 //! | the first contact of a fast body | [`Sweep::first_contact`] | several touch tests |
 //! | two bodies, with the shell of either or both | [`BodyPair`] | one or two queries |
 //!
+//! [`Query::observed_by`] tells what a query does, event by event, and why a contact is kept or dropped.
+//!
 //! [`VirtualCoupling`] turns contacts into force and torque for a haptic device.
 //!
 //! # Conventions
@@ -107,7 +109,7 @@ pub use glamx::{Mat3, Pose3, Quat, Vec3};
 pub use map::SurfaceMesh;
 pub use map::{ErrorBounds, Grid, GridError, Voxelmap, VoxelmapError};
 pub use query::{
-    Approach, Body, BodyPair, Contact, ContactManifold, CountWork, Estimate, Impact, PairContact,
-    Query, Shells, Side, Sweep, Work,
+    Approach, Body, BodyPair, Contact, ContactManifold, DropReason, Estimate, Event, Fate, Impact,
+    Observer, PairContact, Query, Score, Shells, Side, Sweep, Work,
 };
 pub use shell::{Cluster, PointSphereTree, TreeError};

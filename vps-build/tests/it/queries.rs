@@ -160,7 +160,7 @@ fn check_query<F: DistanceField + ?Sized>(
     check_time_critical(&query, center, &flat)?;
 
     let work = Work::default();
-    prop_assert_eq!(query.counting(&work).deepest(), query.deepest());
+    prop_assert_eq!(query.observed_by(&work).deepest(), query.deepest());
     prop_assert!(work.spheres() > 0 && work.points() <= tree.point_count() as u64);
     Ok(())
 }

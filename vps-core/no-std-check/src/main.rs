@@ -48,7 +48,7 @@ fn check() -> Result<(), i32> {
     let work = Work::default();
     let mut segments = 0;
     query
-        .counting(&work)
+        .observed_by(&work)
         .for_each_segment(3, |_, _| segments += 1);
     is(segments > 1 && work.points() > 0, 6)?;
 

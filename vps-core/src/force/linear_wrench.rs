@@ -8,8 +8,8 @@ use wide::f32x4;
 use crate::field::DistanceField;
 use crate::force::wrench::{Weight, Wrench, WrenchSum};
 use crate::query::collectors::{Collector, TestedPoints};
+use crate::query::observer::Observer;
 use crate::query::posed::Query;
-use crate::query::work::CountWork;
 use crate::simd::Vectors;
 
 /// The wrench of a potential with its derivative by the pose of the shell's body. An implicit
@@ -113,7 +113,7 @@ impl Mul<f32> for LinearWrench {
     }
 }
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Force along the gradient of the field and torque about `center` on the shell's body, with
     /// their derivative by the pose; all in the shell frame, for stiffness one. Where the shell's
     /// normals equal those of the field, the force equals that of [`wrench`](Self::wrench).

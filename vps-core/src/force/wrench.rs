@@ -6,8 +6,8 @@ use wide::f32x4;
 use crate::field::DistanceField;
 use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::contact::Contact;
+use crate::query::observer::Observer;
 use crate::query::posed::Query;
-use crate::query::work::CountWork;
 use crate::shell::PointSphereTree;
 use crate::simd::{Vectors, padded};
 
@@ -72,7 +72,7 @@ impl Wrench {
     }
 }
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Penalty force and torque on the shell's body about `center`, all in the shell frame, for
     /// stiffness one. Points within the prediction distance but outside of the solid add nothing.
     pub fn wrench(&self, center: Vec3, weight: Weight) -> Wrench {

@@ -5,6 +5,7 @@ use wide::f32x4;
 
 use crate::field::Discs;
 use crate::query::contact::Contact;
+use crate::query::observer::{Event, Observer, Score};
 use crate::shell::PointSphereTree;
 use crate::simd::{Vectors, lanes_in};
 
@@ -21,6 +22,9 @@ pub(crate) trait Collector {
 
     /// Whether [`add`](Self::add) needs the gradient of the field at each contact.
     const NEEDS_GRADIENT: bool = false;
+
+    /// What a score is.
+    const SCORE: Score = Score::Penetration;
 
     /// Upper bounds on the scores of the contacts in discs (in the shell frame), given upper bounds on
     /// their penetrations.
@@ -73,6 +77,19 @@ impl TestedPoints<'_> {
             #[inline(always)]
             |lane| self.contact(lane),
         )
+    }
+
+    /// Tells an observer of the points before `end`.
+    pub(super) fn observe(&self, end: u32, threshold: f32, observer: &impl Observer) {
+        let contacts = self.contact_mask.to_bitmask();
+        for (lane, penetration) in (0..end - self.first).zip(self.penetrations.to_array()) {
+            observer.observe(Event::PointTested {
+                point_index: self.first + lane,
+                penetration,
+                threshold,
+                is_kept: contacts >> lane & 1 == 1,
+            });
+        }
     }
 
     #[inline(always)]

@@ -3,11 +3,11 @@
 use crate::field::DistanceField;
 use crate::query::collectors::{AllContacts, AnyContact, DeepestContact};
 use crate::query::contact::Contact;
+use crate::query::observer::Observer;
 use crate::query::posed::Query;
-use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Calls `visit` with every contact, in the order of the points.
     ///
     /// Algorithm 1, with two differences that do not change the result: the tree is traversed depth
@@ -106,7 +106,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// ```
     pub fn closest(&self) -> Option<Contact>
     where
-        W: Copy,
+        O: Copy,
     {
         self.with_prediction(f32::INFINITY).deepest()
     }

@@ -4,7 +4,7 @@ use glamx::{Mat3, Pose3, Vec3};
 
 use crate::field::DistanceField;
 use crate::query::approach::Approach;
-use crate::query::work::{CountWork, Work};
+use crate::query::observer::Observer;
 use crate::shell::PointSphereTree;
 use crate::simd::Vectors;
 
@@ -33,7 +33,7 @@ use crate::simd::Vectors;
 /// # Ok::<(), vps_core::TreeError>(())
 /// ```
 #[derive(Debug)]
-pub struct Query<'q, F: ?Sized, W = ()> {
+pub struct Query<'q, F: ?Sized, O = ()> {
     pub(crate) tree: &'q PointSphereTree<'q>,
     pub(crate) field: &'q F,
     pub(crate) rotation: Mat3,
@@ -45,16 +45,16 @@ pub struct Query<'q, F: ?Sized, W = ()> {
     pub(crate) hint: Option<u32>,
     /// Padding of balls in metres: rounding moves a ball and its points differently.
     pub(crate) rounding_slack: f32,
-    pub(crate) work: W,
+    pub(crate) observer: O,
 }
 
-impl<F: ?Sized, W: Copy> Clone for Query<'_, F, W> {
+impl<F: ?Sized, O: Copy> Clone for Query<'_, F, O> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<F: ?Sized, W: Copy> Copy for Query<'_, F, W> {}
+impl<F: ?Sized, O: Copy> Copy for Query<'_, F, O> {}
 
 impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     /// A query for contacts; `shell_to_field` transforms shell coordinates to field coordinates.
@@ -71,11 +71,16 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             approach: Approach::RESTING,
             hint: None,
             rounding_slack: 16.0 * f32::EPSILON * reach,
-            work: (),
+            observer: (),
         }
     }
+}
 
-    /// The same query, counting the clusters and points it tests.
+impl<'q, F: DistanceField + ?Sized, O: Observer> Query<'q, F, O> {
+    /// The same query with an observer of what it does, in place of its present one: a closure
+    /// `Fn(Event)`, or a reference to [`Work`](crate::Work), which counts. The results are the same.
+    ///
+    /// A query takes longer with an observer; with `()`, the observer of a new query, it costs nothing.
     ///
     /// ```
     /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3, Work};
@@ -85,11 +90,11 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
     /// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
     /// let ground = HalfSpace::new(Vec3::Y);
     /// let work = Work::default();
-    /// Query::new(&tree, &ground, Pose3::IDENTITY).counting(&work).deepest();
+    /// Query::new(&tree, &ground, Pose3::IDENTITY).observed_by(&work).deepest();
     /// assert_eq!(work.points(), 2);
     /// # Ok::<(), vps_core::TreeError>(())
     /// ```
-    pub fn counting<'w>(self, work: &'w Work) -> Query<'q, F, &'w Work> {
+    pub fn observed_by<P: Observer>(&self, observer: P) -> Query<'q, F, P> {
         Query {
             tree: self.tree,
             field: self.field,
@@ -100,12 +105,10 @@ impl<'q, F: DistanceField + ?Sized> Query<'q, F> {
             approach: self.approach,
             hint: self.hint,
             rounding_slack: self.rounding_slack,
-            work,
+            observer,
         }
     }
-}
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     /// Speculative distance (`prediction` of parry and rapier): points up to `prediction` metres outside
     /// of the solid count as contacts too; 0 by default.
     ///
@@ -150,6 +153,14 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
     pub fn with_hint(self, point: u32) -> Self {
         let hint = Some(point).filter(|&p| (p as usize) < self.tree.point_count());
         Self { hint, ..self }
+    }
+
+    /// Makes events and hands them to the observer, if there is one.
+    #[inline(always)]
+    pub(crate) fn observe(&self, events: impl FnOnce(&O)) {
+        if O::IS_ACTIVE {
+            events(&self.observer);
+        }
     }
 
     #[inline(always)]

@@ -5,9 +5,9 @@ use wide::f32x4;
 
 use crate::field::{Discs, DistanceField};
 use crate::query::collectors::{Collector, TestedPoints};
+use crate::query::observer::{Event, Observer, Score};
 use crate::query::posed::Query;
-use crate::query::work::CountWork;
-use crate::shell::{Cluster, MAX_LEVELS};
+use crate::shell::{Cluster, MAX_LEVELS, PointSphereTree};
 use crate::simd::multiversion::multiversion;
 use crate::simd::{LANES, Points, Vectors, first_lanes, lanes_in, padded};
 
@@ -24,6 +24,53 @@ struct Entry {
     level: u32,
     /// The number of its children that were visited.
     visited: u32,
+}
+
+/// The events of its visit.
+impl Entry {
+    /// Itself, or those of its children that were not visited, with its bound.
+    fn unvisited(self, tree: &PointSphereTree<'_>) -> impl Iterator<Item = Self> {
+        let (first, count, level) = if self.visited == 0 {
+            (self.cluster, 1, self.level)
+        } else {
+            let cluster = &tree.clusters()[self.cluster as usize];
+            let start = tree.level_starts()[self.level as usize];
+            let first = start + cluster.first + self.visited;
+            (first, cluster.count - self.visited, self.level + 1)
+        };
+        (first..first + count).map(move |cluster| Self {
+            bound: self.bound,
+            cluster,
+            level,
+            visited: 0,
+        })
+    }
+
+    fn bounded(self) -> Event {
+        Event::ClusterBounded {
+            cluster: self.cluster,
+            level: self.level,
+            bound: self.bound,
+        }
+    }
+
+    fn pruned(self, threshold: f32) -> Event {
+        Event::ClusterPruned {
+            cluster: self.cluster,
+            level: self.level,
+            bound: self.bound,
+            threshold,
+        }
+    }
+
+    fn descended(self, threshold: f32) -> Event {
+        Event::ClusterDescended {
+            cluster: self.cluster,
+            level: self.level,
+            bound: self.bound,
+            threshold,
+        }
+    }
 }
 
 /// The clusters to visit, the next one on top. Of each level there are at most [`LANES`]: those that
@@ -69,7 +116,7 @@ impl Stack {
     }
 }
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Searches the whole tree, and returns the collector.
     #[inline(always)]
     pub(crate) fn collect<C: Collector>(&self, mut collector: C) -> C {
@@ -124,31 +171,65 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         (level, cluster): (u32, u32),
         last: u32,
         collector: &mut C,
-        mut visit: impl FnMut(u32, f32, &mut C) -> bool,
+        visit: impl FnMut(u32, f32, &mut C) -> bool,
     ) {
         if !self.has_finite_pose {
             return;
         }
+        self.observe(|observer| {
+            observer.observe(Event::SearchStarted {
+                cluster,
+                level,
+                last_level: last,
+                score: C::SCORE,
+            });
+        });
+        self.visit_clusters((level, cluster), last, collector, visit);
+        self.observe(|observer| observer.observe(Event::SearchEnded));
+    }
+
+    /// [`descend`](Self::descend) in a finite pose.
+    #[inline(always)]
+    fn visit_clusters<C: Collector>(
+        &self,
+        (level, cluster): (u32, u32),
+        last: u32,
+        collector: &mut C,
+        mut visit: impl FnMut(u32, f32, &mut C) -> bool,
+    ) {
         let (clusters, starts) = (self.tree.clusters(), self.tree.level_starts());
         let [bound, ..] = self
-            .score_bounds(&clusters[cluster as usize..], 1, collector)
+            .score_bounds(&clusters[cluster as usize..], collector)
             .to_array();
-        // Before the stack is set up: most bodies of a scene are apart.
-        if bound.is_nan() || bound < collector.threshold() {
-            return;
-        }
-        let mut stack = Stack::EMPTY;
-        stack.push(Entry {
+        let top = Entry {
             bound,
             cluster,
             level,
             visited: 0,
-        });
+        };
+        self.observe(|observer| observer.observe(top.bounded()));
+        // Before the stack is set up: most bodies of a scene are apart.
+        let threshold = collector.threshold();
+        if bound.is_nan() || bound < threshold {
+            self.observe(|observer| observer.observe(top.pruned(threshold)));
+            return;
+        }
+        let mut stack = Stack::EMPTY;
+        stack.push(top);
         while let Some(entry) = stack.pop() {
             let threshold = collector.threshold();
             if entry.bound < threshold {
+                self.observe(|observer| {
+                    let unvisited = entry.unvisited(self.tree);
+                    unvisited.for_each(|entry| observer.observe(entry.pruned(threshold)));
+                });
                 continue;
             }
+            self.observe(|observer| {
+                if entry.visited == 0 {
+                    observer.observe(entry.descended(threshold));
+                }
+            });
             if entry.level == last {
                 if !visit(entry.cluster, entry.bound, collector) {
                     return;
@@ -162,14 +243,11 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 let visited = entry.visited + LANES as u32;
                 stack.push(Entry { visited, ..entry });
             }
-            let bounds = if C::COLLECTS_ALL && entry.bound - threshold > 2.0 * cluster.radius {
+            let is_within = C::COLLECTS_ALL && entry.bound - threshold > 2.0 * cluster.radius;
+            let bounds = if is_within {
                 f32x4::splat(entry.bound)
             } else {
-                self.score_bounds(
-                    &clusters[first as usize..],
-                    remaining.min(LANES as u32),
-                    collector,
-                )
+                self.score_bounds(&clusters[first as usize..], collector)
             };
             // The comparison prunes NaN as well.
             let kept = first_lanes(remaining) & bounds.simd_ge(f32x4::splat(threshold));
@@ -180,6 +258,17 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 level: entry.level + 1,
                 visited: 0,
             };
+            self.observe(|observer| {
+                let kept = kept.to_bitmask();
+                for lane in 0..LANES.min(remaining as usize) {
+                    if !is_within {
+                        observer.observe(child(lane).bounded());
+                    }
+                    if kept >> lane & 1 == 0 {
+                        observer.observe(child(lane).pruned(threshold));
+                    }
+                }
+            });
             if C::BEST_FIRST {
                 lanes_in(kept).for_each(|lane| stack.insert(base, child(lane)));
             } else {
@@ -194,23 +283,49 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         }
     }
 
-    /// Upper bounds on the scores in the first `count` clusters, at most [`LANES`].
+    /// Upper bounds on the scores in the first [`LANES`] clusters. If there are fewer, the last one is
+    /// repeated.
     #[inline(always)]
-    fn score_bounds<C: Collector>(&self, clusters: &[Cluster], count: u32, collector: &C) -> f32x4 {
-        self.work.spheres(count);
+    fn score_bounds<C: Collector>(&self, clusters: &[Cluster], collector: &C) -> f32x4 {
         let (discs, penetrations) = self.penetration_bounds(clusters);
         collector.score_bounds(&discs, f32x4::new(penetrations))
     }
 
     /// Whether there may be a contact, by the bound of the cluster of all points.
     pub(crate) fn may_touch(&self) -> bool {
-        self.work.spheres(1);
-        let top = &self.tree.clusters()[..1];
-        self.has_finite_pose
-            && multiversion(
-                #[inline(always)]
-                || self.penetration_bounds(top).1[0] >= -self.prediction,
-            )
+        if !self.has_finite_pose {
+            return false;
+        }
+        let clusters = &self.tree.clusters()[..1];
+        let bound = multiversion(
+            #[inline(always)]
+            || self.penetration_bounds(clusters).1[0],
+        );
+        let (level, cluster) = ROOT;
+        let (threshold, visited) = (-self.prediction, 0);
+        let top = Entry {
+            bound,
+            cluster,
+            level,
+            visited,
+        };
+        let may_touch = bound >= threshold;
+        self.observe(|observer| {
+            observer.observe(Event::SearchStarted {
+                cluster,
+                level,
+                last_level: level,
+                score: Score::Penetration,
+            });
+            observer.observe(top.bounded());
+            observer.observe(if may_touch {
+                top.descended(threshold)
+            } else {
+                top.pruned(threshold)
+            });
+            observer.observe(Event::SearchEnded);
+        });
+        may_touch
     }
 
     /// The discs of the first [`LANES`] clusters in the shell frame, and upper bounds on the
@@ -255,7 +370,6 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
         collector: &mut C,
     ) -> bool {
         let (points, normals) = (self.tree.points(), self.tree.normals());
-        self.work.points(end - first);
         let mut next = first;
         while next < end {
             let positions = Points::read(points, next as usize);
@@ -286,6 +400,7 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 penetrations,
                 outward,
             };
+            self.observe(|observer| found.observe(end, threshold.to_array()[0], observer));
             if found.contact_mask.any() && !collector.add(&found) {
                 return false;
             }

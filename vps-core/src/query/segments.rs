@@ -3,12 +3,12 @@
 use crate::field::DistanceField;
 use crate::query::collectors::{AllContacts, DeepestContact};
 use crate::query::contact::Contact;
+use crate::query::observer::Observer;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
-use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Calls `visit` with the deepest contact of each cluster of a level that has one, in the order
     /// of the clusters: the segmented traverse (section 2.4). The arguments are the index of the
     /// cluster in its level, and the first of equally deep contacts.

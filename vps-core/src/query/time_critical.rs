@@ -6,9 +6,9 @@ use crate::field::DistanceField;
 use crate::force::wrench::{Weight, Wrench, WrenchSum};
 use crate::query::collectors::{Collector, DeepestContact, TestedPoints};
 use crate::query::contact::Contact;
+use crate::query::observer::Observer;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
-use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 
 /// The state of a time-critical query when it ends.
@@ -44,7 +44,7 @@ pub struct Estimate {
     pub is_complete: bool,
 }
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Time-critical query, from coarse to fine: the parent points of one level after the other
     /// (section 2.1.2), and finally all points. The paper's future work.
     ///

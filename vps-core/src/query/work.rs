@@ -2,8 +2,10 @@
 
 use core::cell::Cell;
 
-/// Counters of the clusters and points that a query tested: see
-/// [`Query::counting`](crate::Query::counting).
+use crate::query::observer::{Event, Observer};
+
+/// Counters of the clusters and points that a query tested. A reference to it is an observer: see
+/// [`Query::observed_by`](crate::Query::observed_by).
 ///
 /// ```
 /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3, Work};
@@ -14,7 +16,7 @@ use core::cell::Cell;
 /// let ground = HalfSpace::new(Vec3::Y);
 /// let work = Work::default();
 /// let far = Pose3::from_translation(Vec3::Y);
-/// Query::new(&tree, &ground, far).counting(&work).touches();
+/// Query::new(&tree, &ground, far).observed_by(&work).touches();
 /// assert_eq!((work.spheres(), work.points()), (1, 0));
 /// # Ok::<(), vps_core::TreeError>(())
 /// ```
@@ -36,40 +38,13 @@ impl Work {
     }
 }
 
-/// A counter of the work of a query: a [`Work`], or `()`, which counts nothing and costs nothing.
-///
-/// ```
-/// use vps_core::{
-///     CountWork, DistanceField, HalfSpace, PointSphereTree, Pose3, Query, Vec3, Work,
-/// };
-///
-/// // The ends of a peg that stands on the ground, one of them 10 mm too deep.
-/// let (low, high) = (Vec3::new(0.0, -0.01, 0.0), Vec3::new(0.0, 0.2, 0.0));
-/// let tree = PointSphereTree::flat(&[low, high], &[Vec3::Y, Vec3::NEG_Y], 1e-4)?;
-/// let ground = HalfSpace::new(Vec3::Y);
-/// fn depth(query: &Query<'_, impl DistanceField, impl CountWork>) -> Option<f32> {
-///     query.deepest().map(|contact| contact.penetration)
-/// }
-///
-/// let (query, work) = (Query::new(&tree, &ground, Pose3::IDENTITY), Work::default());
-/// assert_eq!(depth(&query), depth(&query.counting(&work)));
-/// # Ok::<(), vps_core::TreeError>(())
-/// ```
-pub trait CountWork {
-    /// Adds `count` spheres.
-    fn spheres(&self, _count: u32) {}
-    /// Adds `count` points.
-    fn points(&self, _count: u32) {}
-}
-
-impl CountWork for () {}
-
-impl CountWork for &Work {
-    fn spheres(&self, count: u32) {
-        self.spheres.set(self.spheres.get() + u64::from(count));
-    }
-
-    fn points(&self, count: u32) {
-        self.points.set(self.points.get() + u64::from(count));
+impl Observer for &Work {
+    fn observe(&self, event: Event) {
+        let counter = match event {
+            Event::ClusterBounded { .. } => &self.spheres,
+            Event::PointTested { .. } => &self.points,
+            _ => return,
+        };
+        counter.set(counter.get() + 1);
     }
 }

@@ -171,7 +171,7 @@ mod tests {
         let work = Work::default();
         let query = Query::new(tree, field, pose)
             .with_prediction(0.05)
-            .counting(&work);
+            .observed_by(&work);
         let (mut all, mut segments) = (Vec::new(), Vec::new());
         query.for_each_contact(|c| all.push(c));
         query.for_each_segment(2, |segment, c| segments.push((segment, c)));

@@ -6,6 +6,7 @@ use super::polygon::Polygon;
 use crate::field::Discs;
 use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::contact::Contact;
+use crate::query::observer::Score;
 use crate::simd::lanes_in;
 
 /// Keeps the candidate with the highest score for a polygon.
@@ -19,6 +20,7 @@ pub(super) struct BestCandidate<'p, const N: usize> {
 
 impl<const N: usize> Collector for BestCandidate<'_, N> {
     const BEST_FIRST: bool = true;
+    const SCORE: Score = Score::Gain;
 
     #[inline(always)]
     fn score_bounds(&self, discs: &Discs, penetrations: f32x4) -> f32x4 {

@@ -2,6 +2,7 @@
 
 mod buffer;
 mod collectors;
+mod fate;
 mod polygon;
 mod searched;
 mod source;
@@ -9,11 +10,13 @@ mod weighting;
 
 use glamx::Vec3;
 
+use self::fate::EndedReduction;
 use self::polygon::Polygon;
 use self::source::{CandidateSource, ListedCandidates, best};
 use self::weighting::{DepthWeighting, SUPPORT_CONTACTS};
 use crate::query::approach::Approach;
 use crate::query::contact::Contact;
+use crate::query::observer::{Event, Observer};
 
 /// At most `N` contacts that represent a contact set (contact reduction): the deepest one first, then
 /// those that give the manifold the largest area (section 3.2).
@@ -69,6 +72,41 @@ impl<const N: usize> ContactManifold<N> {
     ///
     /// [`Query::manifold`](crate::Query::manifold) gives the same without a list of all contacts.
     pub fn reduce(contacts: &[Contact], along: Vec3, prediction: f32, approach: Approach) -> Self {
+        Self::reduce_observed(contacts, along, prediction, approach, &())
+    }
+
+    /// The same as [`reduce`](Self::reduce) with an observer, which gets an [`Event::ContactReduced`] for
+    /// each of the contacts, in their order.
+    ///
+    /// ```
+    /// use std::cell::RefCell;
+    /// use vps_core::{Approach, Contact, ContactManifold, DropReason, Event, Fate, Vec3};
+    ///
+    /// // Three contacts in a row.
+    /// let contacts = [(0, 0.0), (1, 1.0), (2, 0.5)].map(|(point_index, x)| Contact {
+    ///     point_index,
+    ///     position: Vec3::new(x, 0.0, 0.0),
+    ///     normal: Vec3::Y,
+    ///     penetration: 0.01,
+    /// });
+    /// let fates = RefCell::new(Vec::new());
+    /// let observer = |event| {
+    ///     if let Event::ContactReduced { fate, .. } = event {
+    ///         fates.borrow_mut().push(fate);
+    ///     }
+    /// };
+    /// let rest = Approach::RESTING;
+    /// ContactManifold::<4>::reduce_observed(&contacts, Vec3::Y, 0.1, rest, &observer);
+    /// let dropped = Fate::Dropped(DropReason::NoArea);
+    /// assert_eq!(fates.into_inner(), [Fate::Kept { rank: 0 }, Fate::Kept { rank: 1 }, dropped]);
+    /// ```
+    pub fn reduce_observed(
+        contacts: &[Contact],
+        along: Vec3,
+        prediction: f32,
+        approach: Approach,
+        observer: &impl Observer,
+    ) -> Self {
         let weighting = DepthWeighting {
             prediction,
             approach,
@@ -79,15 +117,17 @@ impl<const N: usize> ContactManifold<N> {
             |_| along,
             weighting,
             &mut ListedCandidates(contacts),
+            observer,
         )
     }
 
     /// Selects contacts from a source, given the deepest.
-    fn select(
+    fn select<O: Observer>(
         deepest: Option<Contact>,
         along: impl FnOnce(&Contact) -> Vec3,
         weighting: DepthWeighting,
         source: &mut impl CandidateSource<N>,
+        observer: &O,
     ) -> Self {
         let mut manifold = Self::EMPTY;
         if N == 0 {
@@ -97,6 +137,7 @@ impl<const N: usize> ContactManifold<N> {
             return manifold;
         };
         let mut polygon = Polygon::new(&deepest, along(&deepest), weighting);
+        let sufficient_penetration = polygon.penetration_threshold;
         manifold.push(deepest);
         let mut max_contacts = N.min(SUPPORT_CONTACTS);
         let mut is_filled_up = false;
@@ -116,6 +157,19 @@ impl<const N: usize> ContactManifold<N> {
             if may_extend && source.is_curved(&polygon) {
                 max_contacts = N;
             }
+        }
+        if O::IS_ACTIVE {
+            let ended = EndedReduction {
+                manifold: &manifold,
+                polygon: &polygon,
+                sufficient_penetration,
+                max_contacts,
+                is_filled_up,
+            };
+            source.for_each(|contact| {
+                let fate = ended.fate(&contact);
+                observer.observe(Event::ContactReduced { contact, fate });
+            });
         }
         manifold
     }

@@ -10,18 +10,18 @@ use super::source::CandidateSource;
 use super::weighting::DepthWeighting;
 use crate::field::DistanceField;
 use crate::query::contact::Contact;
+use crate::query::observer::Observer;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
-use crate::query::work::CountWork;
 use crate::simd::multiversion::multiversion;
 
 /// The contacts of a query, some of them buffered.
-struct SearchedCandidates<'q, 't, F: ?Sized, W> {
-    query: &'q Query<'t, F, W>,
+struct SearchedCandidates<'q, 't, F: ?Sized, O> {
+    query: &'q Query<'t, F, O>,
     buffer: CandidateBuffer,
 }
 
-impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
+impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// The manifold of the contact set, its area seen along the field's normal at the deepest
     /// point. It equals that of [`ContactManifold::reduce`], but not all contacts are visited.
     ///
@@ -65,14 +65,14 @@ impl<F: DistanceField + ?Sized, W: CountWork> Query<'_, F, W> {
                 inward
             }
         };
-        ContactManifold::select(deepest, along, weighting, &mut source)
+        ContactManifold::select(deepest, along, weighting, &mut source, &self.observer)
     }
 }
 
-impl<F, W, const N: usize> CandidateSource<N> for SearchedCandidates<'_, '_, F, W>
+impl<F, O, const N: usize> CandidateSource<N> for SearchedCandidates<'_, '_, F, O>
 where
     F: DistanceField + ?Sized,
-    W: CountWork,
+    O: Observer,
 {
     fn best(&mut self, polygon: &Polygon<N>) -> Option<Contact> {
         let buffer = &mut self.buffer;
@@ -114,5 +114,9 @@ where
             let positions = batch.positions(self.query.tree);
             polygon.off_plane(positions, batch.penetrations()).any()
         })
+    }
+
+    fn for_each(&self, visit: impl FnMut(Contact)) {
+        self.query.observed_by(()).for_each_contact(visit);
     }
 }

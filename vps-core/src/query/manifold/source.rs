@@ -14,6 +14,9 @@ pub(super) trait CandidateSource<const N: usize> {
     /// Whether the field is curved: a candidate of sufficient weight is off the plane through the
     /// deepest one.
     fn is_curved(&self, polygon: &Polygon<N>) -> bool;
+
+    /// Calls `visit` with all contacts.
+    fn for_each(&self, visit: impl FnMut(Contact));
 }
 
 /// A list of all contacts.
@@ -31,6 +34,10 @@ impl<const N: usize> CandidateSource<N> for ListedCandidates<'_> {
                 .off_plane(position, f32x4::splat(c.penetration))
                 .any()
         })
+    }
+
+    fn for_each(&self, visit: impl FnMut(Contact)) {
+        self.0.iter().copied().for_each(visit);
     }
 }
 

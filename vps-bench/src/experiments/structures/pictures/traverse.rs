@@ -76,7 +76,7 @@ pub(super) fn draw(subject: &Subject<'_>) -> Result<FigureSheet, String> {
     let top = 430 + Panels::HEAD + 8;
     panels.legend(&entries, [40, top])?;
     let work = Work::default();
-    let query = Query::new(tree, &ground, pose).counting(&work);
+    let query = Query::new(tree, &ground, pose).observed_by(&work);
     query.for_each_contact(|_| ());
     let all = format!(
         "{} points in all. The query itself, which also knows how flat clusters are: {} spheres, {} points",
