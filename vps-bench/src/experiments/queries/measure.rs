@@ -285,7 +285,7 @@ impl<'a, F: DistanceField> Asked<'a, F> {
     fn count(&self, kind: QueryKind, ends: &SegmentEnds) -> QueryRow {
         let work = Work::default();
         self.queries()
-            .for_each(|query| kind.execute(&query.counting(&work), ends));
+            .for_each(|query| kind.execute(&query.observed_by(&work), ends));
         QueryRow {
             query: kind.name(),
             spheres: Some(work.spheres() as f64 / self.poses.len() as f64),

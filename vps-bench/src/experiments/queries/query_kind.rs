@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use vps_core::{CountWork, DistanceField, PointSphereTree, Query};
+use vps_core::{DistanceField, Observer, PointSphereTree, Query};
 
 use crate::experiments::shared::tree_query::TreeQuery;
 
@@ -89,7 +89,7 @@ impl QueryKind {
     }
 
     /// Executes the query; its result is computed and dropped.
-    pub(super) fn execute<F: DistanceField, W: CountWork + Copy>(
+    pub(super) fn execute<F: DistanceField, W: Observer + Copy>(
         self,
         query: &Query<'_, F, W>,
         ends: &SegmentEnds,
@@ -108,7 +108,7 @@ impl QueryKind {
 
 /// The sum of the deepest penetrations of all segments, by listing all contacts. `ends` has the first
 /// point behind each segment.
-fn listed<F: DistanceField, W: CountWork>(query: &Query<'_, F, W>, ends: &[usize]) -> f32 {
+fn listed<F: DistanceField, W: Observer>(query: &Query<'_, F, W>, ends: &[usize]) -> f32 {
     let mut segment = 0;
     let (mut deepest, mut sum) = (0.0_f32, 0.0);
     query.for_each_contact(|contact| {

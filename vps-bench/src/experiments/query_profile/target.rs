@@ -67,7 +67,7 @@ impl Target {
             for _ in 0..times {
                 match work {
                     None => self.query.execute(&query),
-                    Some(work) => self.query.execute(&query.counting(work)),
+                    Some(work) => self.query.execute(&query.observed_by(work)),
                 }
             }
         }

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use serde::{Deserialize, Serialize};
-use vps_core::{CountWork, DistanceField, Query, Vec3, Weight};
+use vps_core::{DistanceField, Observer, Query, Vec3, Weight};
 
 /// A query of a point-sphere tree.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -21,7 +21,7 @@ pub(crate) enum TreeQuery {
 
 impl TreeQuery {
     /// Executes the query; its result is computed and dropped.
-    pub(crate) fn execute<F: DistanceField, W: CountWork + Copy>(self, query: &Query<'_, F, W>) {
+    pub(crate) fn execute<F: DistanceField, W: Observer + Copy>(self, query: &Query<'_, F, W>) {
         match self {
             Self::Touches => _ = black_box(query.touches()),
             Self::Deepest => _ = black_box(query.deepest()),
