@@ -35,8 +35,8 @@ impl Entry {
         } else {
             let cluster = &tree.clusters()[self.cluster as usize];
             let start = tree.level_starts()[self.level as usize];
-            let first = start + cluster.first + self.visited;
-            (first, cluster.count - self.visited, self.level + 1)
+            let first = start + cluster.0.first + self.visited;
+            (first, cluster.0.count - self.visited, self.level + 1)
         };
         (first..first + count).map(move |cluster| Self {
             bound: self.bound,
