@@ -15,11 +15,13 @@ use rapier3d::parry::query::{
     ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
 };
 use rapier3d::parry::shape::{Compound, Shape};
+use vps_core::Observer;
 
 use crate::compound::{as_compound_with_vps, update_parts};
 use crate::manifolds::update_manifolds;
 use crate::precision::{core_pose, core_real, real, vector};
 use crate::query::cast::cast;
+use crate::query::event::PairEvent;
 use crate::query::motion::{RigidMotions, Translation};
 use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
@@ -64,6 +66,65 @@ impl VpsDispatcher {
         }
         let pair = Pair::of(g1, g2, self.sampling);
         pair.map(Task::Pair).ok_or(Unsupported)
+    }
+
+    /// The same as [`contact_manifolds`](PersistentQueryDispatcher::contact_manifolds) with an observer:
+    /// why is a contact kept or dropped? The manifolds are the same. It takes longer, as every cluster
+    /// and every point the query looks at is an event.
+    ///
+    /// `pos12` is the pose of the second shape in the frame of the first, `prediction` a distance in
+    /// metres. The contacts of the step before are taken from `manifolds` and replaced.
+    ///
+    /// # Errors
+    /// `Unsupported` if neither shape is a [`VpsShape`](crate::VpsShape), and for compounds, whose parts
+    /// are pairs of their own.
+    ///
+    /// ```
+    /// use std::cell::RefCell;
+    /// use rapier3d::parry::query::ContactManifold;
+    /// use rapier3d::prelude::*;
+    /// use vps_rapier::{ContactEvent, PairEvent, VpsDispatcher, VpsShapeBuilder};
+    ///
+    /// let (vertices, triangles) = Cuboid::new(Vector::splat(0.5)).to_trimesh();
+    /// let body = VpsShapeBuilder::from_triangles(&vertices, &triangles)?.build()?;
+    /// let ground = Cuboid::new(Vector::new(5.0, 0.1, 5.0));
+    /// let pose = Pose::from_translation(Vector::new(0.0, 0.599, 0.0));
+    /// let kept = RefCell::new(Vec::new());
+    /// let observer = |event| {
+    ///     if let PairEvent::Contact { contact, event: ContactEvent::Kept, .. } = event {
+    ///         kept.borrow_mut().push(contact);
+    ///     }
+    /// };
+    /// let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    /// let dispatcher = VpsDispatcher::default();
+    /// dispatcher
+    ///     .observe_contact_manifolds(&pose, &ground, &body, 0.01, &mut manifolds, &observer)
+    ///     .unwrap();
+    /// assert_eq!(kept.into_inner().len(), manifolds[0].points.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn observe_contact_manifolds<M: Default + Clone, C: Default + Copy>(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        observer: &impl Observer<PairEvent>,
+    ) -> Result<(), Unsupported> {
+        let Task::Pair(pair) = self.task(g1, g2)? else {
+            return Err(Unsupported);
+        };
+        let (pose, prediction) = (core_pose(pos12), core_real(prediction));
+        update_manifolds(
+            &pair,
+            &pose,
+            prediction,
+            self.manifolds,
+            manifolds,
+            observer,
+        );
+        Ok(())
     }
 
     /// This dispatcher with parry's own for the other parts of compounds.
@@ -231,7 +292,7 @@ where
         match self.task(g1, g2)? {
             Task::Pair(pair) => {
                 let (pose, prediction) = (core_pose(pos12), core_real(prediction));
-                update_manifolds(&pair, &pose, prediction, self.manifolds, manifolds);
+                update_manifolds(&pair, &pose, prediction, self.manifolds, manifolds, &());
             }
             Task::PartsOfFirst(_) | Task::PartsOfSecond(_) => {
                 let all = self.chain(DefaultQueryDispatcher);

@@ -77,6 +77,8 @@ pub use check::{WorldError, check};
 pub use debug_render::debug_render;
 pub use dispatcher::VpsDispatcher;
 pub use field::shape_field::ShapeField;
+pub use query::event::{ContactEvent, PairDropReason, PairEvent, TurnReason};
+pub use query::pair_contact::PairContact;
 pub use query::shell_in_field::Sampling;
 pub use reduce::Manifolds;
 pub use set_up::{narrow_phase, set_up};

@@ -1,9 +1,10 @@
 //! From the contacts of a pair to manifolds of parry, which an engine recognises in the next step.
 
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
-use vps_core::{Approach, Pose3, Vec3};
+use vps_core::{Approach, Observer, Pose3, Vec3};
 
 use crate::precision::{core_real, core_vector, real, vector};
+use crate::query::event::PairEvent;
 use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
 use crate::reduce::persistence::{ContactKey, match_previous};
@@ -18,6 +19,7 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     prediction: f32,
     kind: Manifolds,
     manifolds: &mut Vec<ContactManifold<M, C>>,
+    observer: &impl Observer<PairEvent>,
 ) {
     let mut old = std::mem::take(manifolds);
     let previous = old.iter().flat_map(|m| &m.points);
@@ -28,7 +30,7 @@ pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     if let Approach::Moved(motion) = approach {
         warn_if_predicted_far(prediction, pair.size(), motion);
     }
-    let contacts = contacts(pair, pos12, prediction, approach, kind, &previous);
+    let contacts = contacts(pair, pos12, prediction, approach, kind, &previous, observer);
     let keys: Vec<_> = contacts.iter().map(ContactKey::of_contact).collect();
     let matched = match_previous(&keys, &old);
     for (contact, data) in contacts.iter().zip(matched) {

@@ -4,6 +4,7 @@ mod brute_force;
 mod distances;
 mod files;
 mod invariants;
+mod observers;
 mod queries;
 mod solids;
 mod support;

@@ -7,21 +7,22 @@ use vps_core::{Pose3, Vec3};
 use crate::precision::{real, vector};
 
 /// A contact between two surfaces. Entries of arrays belong to the first and to the second shape.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PairContact {
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PairContact {
     /// A point on each surface, in the frame of its shape in metres.
-    pub(crate) points: [Vec3; 2],
+    pub points: [Vec3; 2],
     /// The unit normal out of each shape, in its frame. The two are opposite, and the field's.
-    pub(crate) normals: [Vec3; 2],
+    pub normals: [Vec3; 2],
     /// The unit normal out of the first shape by the normal of the shell, in the frame of the first
     /// shape; `None` for points of edges.
-    pub(crate) shell_normal: Option<Vec3>,
+    pub shell_normal: Option<Vec3>,
     /// Whether the point belongs to the shell or the edges of the first shape.
-    pub(crate) shell_is_first: bool,
+    pub shell_is_first: bool,
     /// Feature ids, which identify the contact from step to step.
-    pub(crate) ids: [PackedFeatureId; 2],
+    pub ids: [PackedFeatureId; 2],
     /// In metres, positive inside.
-    pub(crate) penetration: f32,
+    pub penetration: f32,
 }
 
 impl PairContact {

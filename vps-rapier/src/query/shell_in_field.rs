@@ -6,9 +6,10 @@ use std::rc::Rc;
 use rapier3d::parry::shape::{FeatureId, PackedFeatureId, Shape, TypedShape};
 use vps_core::{
     Approach, Ball, Contact, ContactManifold, Cuboid, DistanceField, HalfSpace, LocalPenetration,
-    PointSphereTree, Pose3, Query, Trilinear, Vec3, Weight,
+    Observer, PointSphereTree, Pose3, Query, Trilinear, Vec3, Weight,
 };
 
+use super::event::{PairEvent, ShellObserver};
 use super::pair_contact::PairContact;
 use crate::field::bounds::transformed;
 use crate::field::extended_map::ExtendedMap;
@@ -313,6 +314,7 @@ impl<'s> ShellInField<'s> {
         prediction: f32,
         approach: Approach,
         previous: &[[PackedFeatureId; 2]],
+        observer: &impl Observer<PairEvent>,
         found: &mut Vec<PairContact>,
     ) {
         let pose = self.shell_to_field(pos12);
@@ -321,10 +323,19 @@ impl<'s> ShellInField<'s> {
             let query = Query::new(self.tree, field, pose)
                 .with_prediction(prediction)
                 .with_approach(approach);
-            hint.map_or(query, |point| query.with_hint(point)).manifold()
+            let query = hint.map_or(query, |point| query.with_hint(point));
+            query.observed_by(self.observer(observer)).manifold()
         });
         let contacts = manifold.contacts().iter();
         found.extend(contacts.map(|contact| self.pair_contact(&pose, contact, prediction)));
+    }
+
+    /// The observer of the query of this shell.
+    fn observer<'o, O: Observer<PairEvent>>(&self, observer: &'o O) -> ShellObserver<'o, O> {
+        ShellObserver {
+            observer,
+            shell_is_first: self.shell_is_first,
+        }
     }
 
     /// The present contact of the point of an earlier one, if that was a point of this shell.
@@ -356,6 +367,7 @@ impl<'s> ShellInField<'s> {
         pos12: &Pose3,
         prediction: f32,
         level: u32,
+        observer: &impl Observer<PairEvent>,
         found: &mut Vec<PairContact>,
     ) {
         let pose = self.shell_to_field(pos12);
@@ -366,7 +378,9 @@ impl<'s> ShellInField<'s> {
             found.push(contact);
         };
         with_field!(self, &pose, prediction, field => {
-            let query = Query::new(self.tree, field, pose).with_prediction(prediction);
+            let query = Query::new(self.tree, field, pose)
+                .with_prediction(prediction)
+                .observed_by(self.observer(observer));
             query.for_each_segment(level, visit);
         });
     }

@@ -1,8 +1,9 @@
 //! Recovery from deep penetration.
 
-use vps_core::{Pose3, Vec3};
+use vps_core::{Observer, Pose3, Vec3};
 
 use super::parameters::DEEP_PENETRATION;
+use crate::query::event::{ContactEvent, ContactObserver, PairDropReason, PairEvent, TurnReason};
 use crate::query::pair::Pair;
 use crate::query::pair_contact::{PairContact, max_penetration};
 
@@ -12,6 +13,7 @@ pub(super) fn recover_deep_penetration(
     pair: &Pair<'_>,
     contacts: &mut Vec<PairContact>,
     pos12: &Pose3,
+    observer: &ContactObserver<'_, impl Observer<PairEvent>>,
 ) {
     let is_deep = max_penetration(contacts) > DEEP_PENETRATION * pair.size_in_pose(pos12);
     if is_deep && are_opposed(contacts) {
@@ -20,7 +22,7 @@ pub(super) fn recover_deep_penetration(
             .map(|shell| shell.push_on_first(pos12))
             .sum::<Vec3>();
         if push != Vec3::ZERO {
-            turn_to(contacts, -push.normalize(), pos12);
+            turn_to(contacts, -push.normalize(), pos12, observer);
         }
     }
 }
@@ -33,12 +35,24 @@ fn are_opposed(contacts: &[PairContact]) -> bool {
 
 /// Turns contacts to one normal out of the first shape and drops those that push against it, unless all
 /// do.
-fn turn_to(contacts: &mut Vec<PairContact>, normal: Vec3, pos12: &Pose3) {
+fn turn_to(
+    contacts: &mut Vec<PairContact>,
+    normal: Vec3,
+    pos12: &Pose3,
+    observer: &ContactObserver<'_, impl Observer<PairEvent>>,
+) {
     if contacts.iter().all(|c| c.normals[0].dot(normal) <= 0.0) {
         return;
     }
-    contacts.retain(|c| c.normals[0].dot(normal) > 0.0);
+    contacts.retain(|contact| {
+        let is_kept = contact.normals[0].dot(normal) > 0.0;
+        if !is_kept {
+            observer.observe(contact, ContactEvent::Dropped(PairDropReason::Opposed));
+        }
+        is_kept
+    });
     for contact in contacts {
+        observer.observe_turn(contact, normal, TurnReason::DeepPenetration);
         contact.set_normal(normal, pos12);
     }
 }

@@ -10,7 +10,8 @@
 //! 6. Deep inside, contacts that push against each other are turned to one direction
 //!    ([`deep_penetration`]).
 //!
-//! All constants of the pipeline are in [`parameters`].
+//! All constants of the pipeline are in [`parameters`]. Each step tells an observer what becomes of
+//! contacts ([`event`](crate::query::event)).
 
 mod deep_penetration;
 mod normals;
@@ -21,13 +22,14 @@ mod select;
 pub(crate) use normals::is_same_normal;
 
 use rapier3d::parry::shape::PackedFeatureId;
-use vps_core::{Approach, Pose3};
+use vps_core::{Approach, Observer, Pose3};
 
 use self::deep_penetration::recover_deep_penetration;
 use self::normals::resolve_normals;
 use self::parameters::{MAX_CONTACTS, PERSISTENCE_TOLERANCE};
 use self::persistence::{re_evaluate, should_persist};
 use self::select::{limit_per_normal, reduce};
+use crate::query::event::{ContactEvent, ContactObserver, PairDropReason, PairEvent};
 use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
 
@@ -53,14 +55,17 @@ pub(crate) fn contacts(
     approach: Approach,
     manifolds: Manifolds,
     previous: &[[PackedFeatureId; 2]],
+    observer: &impl Observer<PairEvent>,
 ) -> Vec<PairContact> {
     let mut found = Vec::new();
     for shell in pair.shells(pos12) {
         match manifolds {
-            Manifolds::Reduced => {
-                shell.manifold::<MAX_CONTACTS>(pos12, prediction, approach, previous, &mut found);
+            Manifolds::Reduced => shell.manifold::<MAX_CONTACTS>(
+                pos12, prediction, approach, previous, observer, &mut found,
+            ),
+            Manifolds::Segments(level) => {
+                shell.segments(pos12, prediction, level, observer, &mut found);
             }
-            Manifolds::Segments(level) => shell.segments(pos12, prediction, level, &mut found),
         }
     }
     let by_shells = found.len();
@@ -68,30 +73,49 @@ pub(crate) fn contacts(
         edge_sampler.contacts(pos12, prediction, &mut found);
     }
     let has_edges = found.len() > by_shells;
+    let of_new = ContactObserver {
+        observer,
+        is_previous: false,
+    };
+    let of_previous = ContactObserver {
+        observer,
+        is_previous: true,
+    };
+    of_new.observe_all(&found, ContactEvent::Found);
+    let mut of_kept = &of_new;
     match manifolds {
         Manifolds::Reduced => {
             let mut persistent = re_evaluate(pair, pos12, previous, &found);
             if has_edges || pair.secondary(pos12).is_some() {
-                reduce::<MAX_CONTACTS>(&mut found, prediction, approach);
+                reduce::<MAX_CONTACTS>(&mut found, prediction, approach, &of_new);
             }
-            for contacts in persistent.iter_mut().chain([&mut found]) {
-                resolve_normals(contacts, pos12);
-                limit_per_normal(contacts);
+            if let Some(persistent) = &mut persistent {
+                of_previous.observe_all(persistent, ContactEvent::Found);
+                resolve_normals(persistent, pos12, &of_previous);
+                limit_per_normal(persistent, &of_previous);
             }
+            resolve_normals(&mut found, pos12, &of_new);
+            limit_per_normal(&mut found, &of_new);
             let tolerance = PERSISTENCE_TOLERANCE * pair.size_in_pose(pos12);
-            if let Some(persistent) = persistent
-                && should_persist(&persistent, &found, tolerance)
-            {
-                found = persistent;
+            if let Some(persistent) = persistent {
+                if should_persist(&persistent, &found, tolerance) {
+                    let reason = PairDropReason::PreviousPersist;
+                    of_new.observe_all(&found, ContactEvent::Dropped(reason));
+                    (found, of_kept) = (persistent, &of_previous);
+                } else {
+                    let reason = PairDropReason::PreviousReplaced;
+                    of_previous.observe_all(&persistent, ContactEvent::Dropped(reason));
+                }
             }
-            recover_deep_penetration(pair, &mut found, pos12);
+            recover_deep_penetration(pair, &mut found, pos12, of_kept);
         }
         Manifolds::Segments(_) if has_edges => {
             let mut by_edges = found.split_off(by_shells);
-            reduce::<MAX_CONTACTS>(&mut by_edges, prediction, approach);
+            reduce::<MAX_CONTACTS>(&mut by_edges, prediction, approach, &of_new);
             found.extend(by_edges);
         }
         Manifolds::Segments(_) => {}
     }
+    of_kept.observe_all(&found, ContactEvent::Kept);
     found
 }

@@ -1,8 +1,9 @@
 //! Contact normals where field and shell disagree.
 
-use vps_core::{Pose3, Vec3};
+use vps_core::{Observer, Pose3, Vec3};
 
 use super::parameters::{MIN_MEAN_NORMAL, MIN_NORMAL_WEIGHT, SAME_NORMAL_COSINE, SHELL_ADVANTAGE};
+use crate::query::event::{ContactObserver, PairEvent, TurnReason};
 use crate::query::pair_contact::PairContact;
 
 /// Whether contacts with these unit normals share a manifold.
@@ -15,7 +16,11 @@ pub(crate) fn is_same_normal(a: Vec3, b: Vec3) -> bool {
 /// of all contacts is taken, of the field's normals or of the shell's, whichever agree better among
 /// themselves. A face that lies on a face is thus not pushed aside where either ends. Contacts all
 /// around, as in a thread, keep the normals of the field.
-pub(super) fn resolve_normals(contacts: &mut [PairContact], pos12: &Pose3) {
+pub(super) fn resolve_normals(
+    contacts: &mut [PairContact],
+    pos12: &Pose3,
+    observer: &ContactObserver<'_, impl Observer<PairEvent>>,
+) {
     let (mut field_sum, mut shell_sum, mut total) = (Vec3::ZERO, Vec3::ZERO, 0.0);
     for contact in &*contacts {
         let field_normal = contact.normals[0];
@@ -37,6 +42,7 @@ pub(super) fn resolve_normals(contacts: &mut [PairContact], pos12: &Pose3) {
     for contact in contacts {
         if let Some(shell_normal) = contact.shell_normal {
             let normal = closest_between(contact.normals[0], shell_normal, mean);
+            observer.observe_turn(contact, normal, TurnReason::Resolved);
             contact.set_normal(normal, pos12);
         }
     }
