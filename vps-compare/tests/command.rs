@@ -1,33 +1,17 @@
 //! The command on two meshes made by code.
 
+mod support;
+
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use serde_json::Value;
 use vps_build::Mesh;
 use vps_compare::Algorithm;
 
-/// A folder of its own for a test, gone at its end.
-struct Folder(PathBuf);
+use crate::support::{Folder, obj, vps_compare};
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let name = format!("vps-compare-{name}-{}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        std::fs::write(self.0.join(name), text).unwrap();
-        self.path(name)
-    }
-
     /// A cup, open at the top, and a ball.
     fn meshes(&self) -> [String; 2] {
         let cup = vps_build::models::cup(1);
@@ -37,24 +21,6 @@ impl Folder {
             self.write("ball.stl", &stl(&ball)),
         ]
     }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn obj(mesh: &Mesh) -> String {
-    let mut text = String::new();
-    for v in mesh.vertices() {
-        writeln!(text, "v {} {} {}", v.x, v.y, v.z).unwrap();
-    }
-    for t in mesh.triangles() {
-        let [a, b, c] = t.map(|v| v + 1);
-        writeln!(text, "f {a} {b} {c}").unwrap();
-    }
-    text
 }
 
 fn stl(mesh: &Mesh) -> String {
@@ -67,19 +33,6 @@ fn stl(mesh: &Mesh) -> String {
         text += "endloop\nendfacet\n";
     }
     text + "endsolid ball\n"
-}
-
-/// Exit status, standard output and standard error without the lines of a log, which a slow machine
-/// gets.
-fn vps_compare(arguments: &[&str]) -> (Option<i32>, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_vps-compare"));
-    let output = command.args(arguments).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let errors = text(output.stderr);
-    let errors = errors
-        .split_inclusive('\n')
-        .filter(|l| !l.contains(" (after "));
-    (output.status.code(), text(output.stdout), errors.collect())
 }
 
 const SMALL: [&str; 8] = [
@@ -443,7 +396,8 @@ fn an_algorithm_that_takes_too_much_memory_is_ended_and_says_so() {
 /// Those of the library that builds assets as well, which speaks through this command.
 #[test]
 fn options_that_messages_recommend_exist() {
-    let (_, help, _) = vps_compare(&["--help"]);
+    let [help, explain] = [&["--help"][..], &["explain", "--help"]].map(|a| vps_compare(a).1);
+    let help = help + &explain;
     let sources = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = 0;
     let mut folders = vec![sources.join("src"), sources.join("../vps-build/src")];

@@ -7,17 +7,34 @@ use vps_compare::{Algorithm, Sizes};
 
 use super::{Error, options};
 
+/// The two meshes.
+#[derive(clap::Args)]
+pub(super) struct MeshArgs {
+    /// One mesh: .obj, .ply, .stl or .off
+    pub(super) mesh_a: PathBuf,
+    /// The other mesh, which takes the poses
+    pub(super) mesh_b: PathBuf,
+    /// Length of a unit of mesh A, in metres
+    #[arg(long, default_value_t = 1.0)]
+    pub(super) scale_a: f64,
+    /// Length of a unit of mesh B, in metres
+    #[arg(long, default_value_t = 1.0)]
+    pub(super) scale_b: f64,
+    /// Which side of a face is the inside
+    #[arg(long, value_enum, default_value_t = SignName::Auto)]
+    pub(super) sign: SignName,
+}
+
 /// Compares collision algorithms on two meshes: how fast, how large, how wrong.
 ///
 /// Each algorithm is asked for the contacts of mesh B with mesh A, pose by pose, and its deepest
 /// contact is compared with the exact penetration of the two solids.
 #[derive(Parser)]
 #[command(version)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct Args {
-    /// One mesh: .obj, .ply, .stl or .off
-    pub(super) mesh_a: PathBuf,
-    /// The other mesh, which takes the poses
-    pub(super) mesh_b: PathBuf,
+    #[command(flatten)]
+    pub(super) meshes: MeshArgs,
     /// A CSV file of poses of B in the frame of A, with the columns x_m, y_m, z_m, qx, qy, qz, qw
     /// [default: random ones]
     #[arg(long, value_name = "POSES.csv")]
@@ -34,12 +51,6 @@ pub(crate) struct Args {
     /// smaller mesh]
     #[arg(long, value_name = "METRES", conflicts_with = "poses")]
     pub(super) spread: Option<f64>,
-    /// Length of a unit of mesh A, in metres
-    #[arg(long, default_value_t = 1.0)]
-    pub(super) scale_a: f64,
-    /// Length of a unit of mesh B, in metres
-    #[arg(long, default_value_t = 1.0)]
-    pub(super) scale_b: f64,
     /// Prediction: the distance up to which contacts are queried, in metres [default: 2 % of the
     /// longest side of the smaller mesh]
     #[arg(long, value_name = "METRES")]
@@ -63,9 +74,6 @@ pub(crate) struct Args {
     /// Most parts of a convex decomposition, of up to 100 vertices each
     #[arg(long, default_value_t = SIZES.parts)]
     pub(super) parts: usize,
-    /// Which side of a face is the inside
-    #[arg(long, value_enum, default_value_t = SignName::Auto)]
-    pub(super) sign: SignName,
     /// Most seconds an algorithm may take to prepare and to answer, all poses together; it is ended
     /// then
     #[arg(long, value_name = "SECONDS", default_value_t = 300.0)]

@@ -4,6 +4,7 @@ mod args;
 mod candidate;
 mod catch_panic;
 mod comparison;
+mod explain;
 mod measure;
 mod options;
 mod poses;
@@ -14,6 +15,7 @@ mod table;
 mod worker;
 
 pub(crate) use args::Args;
+pub(crate) use explain::{ExplainArgs, run as explain};
 
 use candidate::Candidate;
 use comparison::Comparison;

@@ -15,7 +15,7 @@ pub(super) fn prepare(
 ) -> Result<Prepared, String> {
     let assets = |mesh: &Mesh, options: &BuildOptions| {
         let options = BuildOptions {
-            sign: args.sign.into(),
+            sign: args.meshes.sign.into(),
             memory_limit: args.memory_limit.saturating_mul(1 << 20),
             ..options.clone()
         };

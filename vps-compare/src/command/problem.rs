@@ -6,7 +6,7 @@ use rapier3d::math::Pose;
 use vps_build::{ExactSolid, Mesh, read_mesh};
 use vps_compare::oracle::{ExactPenetration, SolidOracle};
 
-use super::args::Args;
+use super::args::{Args, MeshArgs, SignName};
 use super::progress::Progress;
 use super::{Error, poses};
 
@@ -35,19 +35,15 @@ const TOLERANCE: f64 = 0.001;
 
 impl Problem {
     pub(super) fn of(args: &Args, progress: &Progress) -> Result<Self, Error> {
-        let (mesh_a, mesh_b) = meshes(args)?;
+        let (mesh_a, mesh_b) = meshes(&args.meshes)?;
         let read = args.poses.as_deref().map(poses::read).transpose()?;
         progress.set("sorting triangles".into());
-        let solid_a = solid(&args.mesh_a, &mesh_a, args)?;
-        let solid_b = solid(&args.mesh_b, &mesh_b, args)?;
+        let solid_a = solid(&args.meshes.mesh_a, &mesh_a, args.meshes.sign)?;
+        let solid_b = solid(&args.meshes.mesh_b, &mesh_b, args.meshes.sign)?;
         let watertight = [&solid_a, &solid_b].map(|solid| solid.repairs().is_none());
         let oracle = SolidOracle::new(solid_a, solid_b);
         let is_open = oracle.is_open();
-        let longest = |mesh: &Mesh| {
-            let (low, high) = mesh.bounds();
-            (high - low).max_element()
-        };
-        let size = longest(&mesh_a).min(longest(&mesh_b));
+        let size = size([&mesh_a, &mesh_b]);
         let spread_m = args.spread.unwrap_or(SPREAD * size);
         let is_random = read.is_none();
         let poses = match read {
@@ -72,7 +68,9 @@ impl Problem {
         Ok(Self {
             watertight,
             spread_m: is_random.then_some(spread_m),
-            prediction_m: args.prediction.unwrap_or(PREDICTION * size),
+            prediction_m: args
+                .prediction
+                .unwrap_or_else(|| default_prediction([&mesh_a, &mesh_b])),
             tolerance_m: args.tolerance.unwrap_or(TOLERANCE * size),
             poses: poses.into_iter().enumerate().map(exact).collect(),
             exact_tolerance_m: oracle.tolerance_m(),
@@ -88,8 +86,22 @@ impl Problem {
     }
 }
 
+/// The default prediction in metres.
+pub(super) fn default_prediction(meshes: [&Mesh; 2]) -> f64 {
+    PREDICTION * size(meshes)
+}
+
+/// The longest side of the smaller mesh in metres.
+fn size(meshes: [&Mesh; 2]) -> f64 {
+    let longest = meshes.map(|mesh| {
+        let (low, high) = mesh.bounds();
+        (high - low).max_element()
+    });
+    longest[0].min(longest[1])
+}
+
 /// A and B in metres.
-pub(super) fn meshes(args: &Args) -> Result<(Mesh, Mesh), Error> {
+pub(super) fn meshes(args: &MeshArgs) -> Result<(Mesh, Mesh), Error> {
     Ok((
         mesh(&args.mesh_a, args.scale_a, "--scale-a")?,
         mesh(&args.mesh_b, args.scale_b, "--scale-b")?,
@@ -102,7 +114,7 @@ fn mesh(path: &Path, scale: f64, option: &str) -> Result<Mesh, Error> {
     Ok(scaled.map_err(|e| format!("{}: {option}: {e}", path.display()))?)
 }
 
-fn solid(path: &Path, mesh: &Mesh, args: &Args) -> Result<ExactSolid, Error> {
-    let solid = ExactSolid::new(mesh, args.sign.into());
+fn solid(path: &Path, mesh: &Mesh, sign: SignName) -> Result<ExactSolid, Error> {
+    let solid = ExactSolid::new(mesh, sign.into());
     Ok(solid.map_err(|e| format!("{}: {e}", path.display()))?)
 }

@@ -54,7 +54,7 @@ pub(super) fn work(name: &str, args: &Args) -> Result<(), Error> {
     let mut algorithms = args.algorithms()?.into_iter();
     let algorithm = algorithms.find(|algorithm| algorithm.key() == name);
     let algorithm = algorithm.ok_or_else(|| format!("`{name}` takes no part"))?;
-    let (ground, body) = problem::meshes(args)?;
+    let (ground, body) = problem::meshes(&args.meshes)?;
     send(&Ready)?;
     let start = Instant::now();
     let prepared = catch_panic(|| prepare::prepare(&algorithm, args, [&ground, &body]));

@@ -60,7 +60,6 @@ impl<E, T: Fn(E)> Observer<E> for T {
 /// [`Query::touches`](crate::Query::touches) does, each point below its top is either tested or below
 /// exactly one pruned cluster.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Event {
     /// A search begins below a cluster and goes down to a level. Within it all bounds and thresholds of
     /// clusters are scores.
