@@ -169,7 +169,7 @@ fn check(
 
     let mut found = Vec::new();
     let (events, ()) = observed(&query, |q| {
-        q.for_each_contact(|contact| found.push(contact))
+        q.for_each_contact(|contact| found.push(contact));
     });
     prop_assert_eq!(&found, &contacts);
     prop_assert_eq!(searches(&events).len(), 1);
