@@ -6,6 +6,7 @@ mod builder;
 mod compare;
 mod fetch;
 mod haptics;
+mod messages;
 mod project;
 mod queries;
 mod report;
