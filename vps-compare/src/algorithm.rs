@@ -103,6 +103,12 @@ pub enum PrepareError {
     /// The asset cannot be built.
     #[error("cannot build the asset: {0}")]
     Asset(String),
+    /// The mesh lies so far from its origin that 32-bit coordinates would lose it.
+    #[error(
+        "the mesh lies so far from its origin that 32-bit coordinates would lose it: move it to its \
+         origin, and its poses by as much"
+    )]
+    FarFromOrigin,
     /// The mesh is not that of a ball.
     #[error("the vertices of the mesh are not on a ball around its origin")]
     NotABall,

@@ -1,5 +1,6 @@
 //! Every algorithm on scenes whose answers are known.
 
+use glamx::DVec3;
 use rapier3d::math::Pose;
 use vps_build::Mesh;
 use vps_compare::oracle::PlaneOracle;
@@ -118,4 +119,21 @@ fn a_torus_is_not_a_ball() {
     };
     let prepared = Ball.prepare(&scene).map(|_| ());
     assert_eq!(prepared, Err(PrepareError::NotABall));
+}
+
+#[test]
+fn a_mesh_far_from_its_origin_is_refused() {
+    let ball = Mesh::icosphere(0.1, 2).unwrap();
+    let vertices: Vec<_> = ball
+        .vertices()
+        .iter()
+        .map(|v| *v + DVec3::splat(1e5))
+        .collect();
+    let far = Mesh::new(&vertices, ball.triangles()).unwrap();
+    let scene = Scene {
+        body: &far,
+        ground: Ground::Mesh(&ball),
+    };
+    let prepared = Vps::default().prepare(&scene);
+    assert_eq!(prepared.err(), Some(PrepareError::FarFromOrigin));
 }

@@ -149,7 +149,13 @@ impl Vps {
         assets: &AssetSource<'_>,
     ) -> Result<Prepared, PrepareError> {
         let asset = |mesh: &Mesh, options: &BuildOptions| {
-            assets(mesh, options).map_err(PrepareError::Asset)
+            let asset = assets(mesh, options).map_err(PrepareError::Asset)?;
+            // Poses are those of meshes, and in 32 bits.
+            if asset.origin == [0.0; 3] {
+                Ok(asset)
+            } else {
+                Err(PrepareError::FarFromOrigin)
+            }
         };
         let body = asset(scene.body, &self.build_options())?;
         let size = size_of_asset(&body);
