@@ -51,7 +51,7 @@ fn distances_are_within_the_bounds_the_assets_state() {
             assert!(error <= bound + 1e-6, "{what}: {error} is beyond {bound}");
         }
     }
-    assert_eq!(numbers("spheres", "wrong_spheres"), [0.0]);
+    assert_eq!(numbers("spheres", "spheres"), [40.0]);
     // The other program agrees.
     let grids = numbers("grids", "near_error_voxels_max");
     assert_eq!(grids.len(), 6);
