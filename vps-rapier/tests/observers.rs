@@ -118,7 +118,6 @@ fn each_contact_of_a_body_that_settles_has_one_end() {
     let cuboid = Cuboid::new(Vector::new(5.0, 0.5, 5.0));
     let other = vps(&Mesh::cuboid([4.0, 1.0, 4.0]).unwrap()).with_role(Role::Both);
     let reach = -f64::from(body.asset().tree.bounds().min.y);
-    let mut all = Vec::new();
     for ground in [&cuboid as &dyn Shape, &other] {
         let mut contacts = Contacts::new();
         let mut seen = Vec::new();
@@ -145,12 +144,7 @@ fn each_contact_of_a_body_that_settles_has_one_end() {
             matches!(event, PairEvent::ShellQuery { event, .. } if is_test(event))
         });
         assert!(tested.count() > 30);
-        all.extend(seen);
     }
-    // Two shells give more contacts than a pair may have.
-    let is_reduced =
-        |e: &ContactEvent| matches!(e, ContactEvent::Dropped(PairDropReason::Reduced(_)));
-    assert!(saw(&all, is_reduced));
 }
 
 #[test]

@@ -158,8 +158,13 @@ impl<'q, F: DistanceField + ?Sized, O: Observer> Query<'q, F, O> {
     /// Makes events and hands them to the observer, if there is one.
     #[inline(always)]
     pub(crate) fn observe(&self, events: impl FnOnce(&O)) {
+        /// Apart from the search, which is compiled for every field, collector and instruction set.
+        #[inline(never)]
+        fn tell<O>(observer: &O, events: impl FnOnce(&O)) {
+            events(observer);
+        }
         if O::IS_ACTIVE {
-            events(&self.observer);
+            tell(&self.observer, events);
         }
     }
 
