@@ -187,7 +187,7 @@ fn help_names_all_algorithms_with_their_options() {
         let line = format!("- {}: {}", algorithm.key(), algorithm.about());
         assert!(help.contains(&line), "{line}");
     }
-    assert!(help.contains("VHACD [parts=8, vertices=100, resolution=64]"));
+    assert!(help.contains("VHACD [parts=8, resolution=64, vertices=100]"));
     assert!(help.contains("around their origins; only if it is named"));
 }
 
