@@ -115,10 +115,9 @@ impl VpsDispatcher {
         let Task::Pair(pair) = self.task(g1, g2)? else {
             return Err(Unsupported);
         };
-        let (pose, prediction) = (core_pose(pos12), core_real(prediction));
         update_manifolds(
             &pair,
-            &pose,
+            pos12,
             prediction,
             self.manifolds,
             manifolds,
@@ -291,8 +290,7 @@ where
     ) -> Result<(), Unsupported> {
         match self.task(g1, g2)? {
             Task::Pair(pair) => {
-                let (pose, prediction) = (core_pose(pos12), core_real(prediction));
-                update_manifolds(&pair, &pose, prediction, self.manifolds, manifolds, &());
+                update_manifolds(&pair, pos12, prediction, self.manifolds, manifolds, &());
             }
             Task::PartsOfFirst(_) | Task::PartsOfSecond(_) => {
                 let all = self.chain(DefaultQueryDispatcher);

@@ -1,9 +1,10 @@
 //! From the contacts of a pair to manifolds of parry, which an engine recognises in the next step.
 
+use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use vps_core::{Approach, Observer, Pose3, Vec3};
 
-use crate::precision::{core_real, core_vector, real, vector};
+use crate::precision::{core_pose, core_real, core_vector, real, vector};
 use crate::query::event::PairEvent;
 use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
@@ -15,12 +16,13 @@ use crate::warnings::warn_if_predicted_far;
 /// data an engine keeps stays with the ids of contacts, and with the index of manifolds.
 pub(crate) fn update_manifolds<M: Default + Clone, C: Default + Copy>(
     pair: &Pair<'_>,
-    pos12: &Pose3,
-    prediction: f32,
+    pos12: &Pose,
+    prediction: Real,
     kind: Manifolds,
     manifolds: &mut Vec<ContactManifold<M, C>>,
     observer: &impl Observer<PairEvent>,
 ) {
+    let (pos12, prediction) = (&core_pose(pos12), core_real(prediction));
     let mut old = std::mem::take(manifolds);
     let previous = old.iter().flat_map(|m| &m.points);
     let previous: Vec<_> = previous.map(|c| [c.fid1, c.fid2]).collect();
