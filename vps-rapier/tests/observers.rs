@@ -148,7 +148,7 @@ fn each_contact_of_a_body_that_settles_has_one_end() {
 }
 
 #[test]
-fn turned_normals_and_opposed_contacts_are_told() {
+fn turned_normals_and_opposed_and_reduced_contacts_are_told() {
     let box_on_edge = vps(&Mesh::cuboid([1.0; 3]).unwrap());
     let table = Cuboid::new(Vector::new(1.0, 0.5, 1.0));
     // The body's face overhangs an edge of the table.
@@ -172,6 +172,10 @@ fn turned_normals_and_opposed_contacts_are_told() {
     assert!(saw(&seen, turned(TurnReason::DeepPenetration)));
     let opposed = ContactEvent::Dropped(PairDropReason::Opposed);
     assert!(saw(&seen, |event| *event == opposed));
+    // Two shells give more contacts than a pair may have.
+    let is_reduced =
+        |e: &ContactEvent| matches!(e, ContactEvent::Dropped(PairDropReason::Reduced(_)));
+    assert!(saw(&seen, is_reduced));
 }
 
 #[test]
