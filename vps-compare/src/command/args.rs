@@ -97,7 +97,7 @@ pub(crate) struct Args {
 }
 
 /// Sizes of the algorithms unless others are given.
-const SIZES: Sizes = Sizes {
+pub(super) const SIZES: Sizes = Sizes {
     points: 10_000,
     voxels: 100,
     parts: 8,
@@ -131,6 +131,24 @@ impl From<SignName> for Sign {
     }
 }
 
+/// Counts of options by name, of which none may be 0.
+pub(super) fn check_counts(counts: &[(&str, u64)]) -> Result<(), Error> {
+    match counts.iter().find(|(_, count)| *count == 0) {
+        Some((name, _)) => Err(format!("{name} must be at least 1").into()),
+        None => Ok(()),
+    }
+}
+
+/// A length in metres, if there is one.
+pub(super) fn check_length(name: &str, length: Option<f64>) -> Result<(), Error> {
+    match length {
+        Some(length) if !(length >= 0.0 && (length as f32).is_finite()) => {
+            Err(format!("{name} must be a length in metres, not {length}").into())
+        }
+        _ => Ok(()),
+    }
+}
+
 impl Args {
     /// The algorithms asked for, with their options.
     pub(super) fn algorithms(&self) -> Result<Vec<Algorithm>, Error> {
@@ -151,21 +169,10 @@ impl Args {
             ("--parts", self.parts as u64),
             ("--memory-limit", self.memory_limit),
         ];
-        if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
-            return Err(format!("{name} must be at least 1").into());
-        }
-        let lengths = [
-            ("--spread", self.spread),
-            ("--prediction", self.prediction),
-            ("--tolerance", self.tolerance),
-        ];
-        for (name, length) in lengths {
-            if let Some(length) = length
-                && !(length >= 0.0 && (length as f32).is_finite())
-            {
-                return Err(format!("{name} must be a length in metres, not {length}").into());
-            }
-        }
+        check_counts(&counts)?;
+        check_length("--spread", self.spread)?;
+        check_length("--prediction", self.prediction)?;
+        check_length("--tolerance", self.tolerance)?;
         if self.time_limit.is_nan() || self.time_limit <= 0.0 {
             let given = self.time_limit;
             return Err(format!("--time-limit must be positive, not {given}").into());

@@ -17,11 +17,14 @@ mod worker;
 pub(crate) use args::Args;
 pub(crate) use explain::{ExplainArgs, run as explain};
 
+use std::path::Path;
+
 use candidate::Candidate;
 use comparison::Comparison;
 use measure::measure;
 use problem::Problem;
 use progress::Progress;
+use serde::Serialize;
 use vps_compare::Algorithm;
 
 /// The error that ends the command: one line for people.
@@ -44,12 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Error> {
     let rows = measure(&problem, &mut candidates, &progress);
     drop(progress);
     if let Some(path) = &args.csv {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for row in &rows {
-            writer.serialize(row)?;
-        }
-        let bytes = writer.into_inner().map_err(|e| e.into_error())?;
-        vps_build::write_atomically(path, &bytes)?;
+        write_csv(path, &rows)?;
     }
     let comparison = Comparison::of(args, &problem, &candidates, &rows);
     if args.json {
@@ -58,4 +56,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Error> {
         print!("{}", table::text(&comparison));
     }
     Ok(())
+}
+
+/// Writes a CSV file with a row for each of `rows`, as a whole or not at all.
+fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<(), Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
+    Ok(vps_build::write_atomically(path, &bytes)?)
 }

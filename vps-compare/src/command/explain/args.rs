@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use crate::command::Error;
-use crate::command::args::MeshArgs;
+use crate::command::args::{MeshArgs, SIZES, check_counts, check_length};
 
 /// Explains one answer of VPS: why each contact of B with A was kept or dropped.
 ///
@@ -23,10 +23,10 @@ pub(crate) struct ExplainArgs {
     #[arg(long, value_name = "METRES")]
     pub(super) prediction: Option<f64>,
     /// Points of each pointshell, to within 2 %
-    #[arg(long, default_value_t = 10_000)]
+    #[arg(long, default_value_t = SIZES.points)]
     pub(super) points: u32,
     /// Voxels along the longest side of a mesh
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = SIZES.voxels)]
     pub(super) voxels: u32,
     /// PLY file with the points of the shells, coloured by what became of them, and the normals of the
     /// contacts that remain, in the frame of A
@@ -42,19 +42,11 @@ pub(crate) struct ExplainArgs {
 
 impl ExplainArgs {
     pub(super) fn check(&self) -> Result<(), Error> {
-        let counts = [
+        check_counts(&[
             ("--row", self.row as u64),
             ("--points", u64::from(self.points)),
             ("--voxels", u64::from(self.voxels)),
-        ];
-        if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
-            return Err(format!("{name} must be at least 1").into());
-        }
-        if let Some(length) = self.prediction
-            && !(length >= 0.0 && (length as f32).is_finite())
-        {
-            return Err(format!("--prediction must be a length in metres, not {length}").into());
-        }
-        Ok(())
+        ])?;
+        check_length("--prediction", self.prediction)
     }
 }

@@ -14,7 +14,7 @@ use event_row::EventRow;
 use scene::Scene;
 use story::Story;
 
-use super::Error;
+use super::{Error, write_csv};
 
 pub(crate) fn run(args: &ExplainArgs) -> Result<(), Error> {
     args.check()?;
@@ -23,12 +23,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<(), Error> {
     let story = Story::of(&scene, &events);
     let rows = EventRow::all(&scene, &events);
     if let Some(path) = &args.csv {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for row in &rows {
-            writer.serialize(row)?;
-        }
-        let bytes = writer.into_inner().map_err(|e| e.into_error())?;
-        vps_build::write_atomically(path, &bytes)?;
+        write_csv(path, &rows)?;
     }
     if let Some(path) = &args.ply {
         vps_build::write_atomically(path, ply::text(&scene, &story).as_bytes())?;

@@ -7,11 +7,13 @@ use glamx::DVec3;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::FeatureId;
-use vps_build::{BuildOptions, PointCount, Resolution, build};
+use vps_build::{BuildOptions, build};
+use vps_compare::{CollisionAlgorithm, Sizes, Vps};
 use vps_core::{PointSphereTree, Pose3, Vec3};
 use vps_rapier::{PairContact, PairEvent, VpsDispatcher, VpsShape};
 
 use super::ExplainArgs;
+use crate::command::args::SIZES;
 use crate::command::problem::{default_prediction, meshes};
 use crate::command::{Error, poses};
 
@@ -101,12 +103,17 @@ impl Scene {
     }
 }
 
+/// Those of the algorithm `vps`.
 fn options(args: &ExplainArgs) -> BuildOptions {
+    let mut vps = Vps::default();
+    vps.set_sizes(&Sizes {
+        points: args.points,
+        voxels: args.voxels,
+        ..SIZES
+    });
     BuildOptions {
-        resolution: Resolution::VoxelsAlongLongest(args.voxels),
-        points: PointCount::About(args.points),
         sign: args.meshes.sign.into(),
-        ..BuildOptions::default()
+        ..vps.build_options()
     }
 }
 
