@@ -35,10 +35,20 @@ pub(crate) trait Experiment {
     /// Checks the settings; an error names the key.
     fn check(&self) -> Result<(), String>;
 
+    /// The model and the length of its unit in metres, if the kind has one that can be replaced.
+    fn model_mut(&mut self) -> Option<(&mut String, &mut f64)> {
+        None
+    }
+
     /// Replaces the model, and its scale if one is given; false if the kind has no model to be
     /// replaced.
-    fn replace_model(&mut self, _model: &str, _scale: Option<f64>) -> bool {
-        false
+    fn replace_model(&mut self, model: &str, scale: Option<f64>) -> bool {
+        let Some((its_model, its_scale)) = self.model_mut() else {
+            return false;
+        };
+        *its_model = model.into();
+        *its_scale = scale.unwrap_or(*its_scale);
+        true
     }
 
     /// The model and the length of its unit in metres, if a report states how to run another one.

@@ -186,10 +186,8 @@ impl Experiment for Settings {
         Ok(())
     }
 
-    fn replace_model(&mut self, model: &str, scale: Option<f64>) -> bool {
-        self.model = model.into();
-        self.scale = scale.unwrap_or(self.scale);
-        true
+    fn model_mut(&mut self) -> Option<(&mut String, &mut f64)> {
+        Some((&mut self.model, &mut self.scale))
     }
 
     fn model(&self) -> Option<(&str, f64)> {

@@ -131,8 +131,8 @@ impl Experiment for Settings {
         Ok(())
     }
 
-    fn replace_model(&mut self, model: &str, scale: Option<f64>) -> bool {
-        self.fall.replace_model(model, scale)
+    fn model_mut(&mut self) -> Option<(&mut String, &mut f64)> {
+        self.fall.model_mut()
     }
 
     fn algorithms(&self) -> Vec<&str> {
