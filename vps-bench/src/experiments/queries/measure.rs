@@ -4,13 +4,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rapier3d::math::{Pose, Rotation, Vector};
-use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::SharedShape;
 use serde::Serialize;
-use vps_build::{BuildOptions, Clustering, Density, PointCount, Resolution, models};
-use vps_compare::{Contacts, Dispatcher, Memory, Prepared};
+use vps_build::{BuildOptions, Clustering, Density, Mesh, PointCount, Resolution, models};
+use vps_compare::{Contacts, Ground, Prepared, Scene};
 use vps_core::{Asset, DistanceField, PointSphereTree, Query, Work};
-use vps_rapier::{VpsDispatcher, VpsShape};
 
 use super::poses::PoseSet;
 use super::query_kind::{QueryKind, SegmentEnds};
@@ -89,27 +86,20 @@ impl Settings {
             let turn = Rotation::from_scaled_axis(Vector::new(0.3, 1.0, 0.2) * (1.05 * i as f32));
             Pose::from_parts(Vector::new(0.15, 0.02, 0.05), turn)
         });
-        let is_trimesh = what == self.trimesh;
-        let prepared = if is_trimesh {
-            let vertices = body.mesh.vertices().iter().map(|v| v.as_vec3()).collect();
-            let mesh = SharedShape::trimesh(vertices, body.mesh.triangles().to_vec());
-            in_itself(
-                mesh.map_err(|e| e.to_string())?,
-                Arc::new(DefaultQueryDispatcher),
-            )
-        } else {
-            let shell = shell(context, what, &body.mesh)?.asset;
-            in_itself(
-                VpsShape::new(shell).into(),
-                Arc::new(VpsDispatcher::default()),
-            )
+        let scene = Scene {
+            body: &body.mesh,
+            ground: Ground::Mesh(&body.mesh),
         };
+        let assets = |mesh: &Mesh, options: &BuildOptions| Ok(asset(context, mesh, options)?.asset);
+        let method = &context.algorithms.get(what)?.method;
+        let prepared = method.prepare_with(&scene, &assets);
+        let prepared = prepared.map_err(|e| e.to_string())?;
         let mut is_supported = true;
         let mut ask = |pose: &Pose, contacts: &mut Contacts| {
             let result = prepared.query(pose, self.fall.prediction_m, contacts);
             is_supported &= result.is_ok();
         };
-        let time_us = if is_trimesh {
+        let time_us = if what == self.trimesh {
             let start = Instant::now();
             for pose in &poses[..2] {
                 ask(pose, &mut Contacts::default());
@@ -311,16 +301,4 @@ fn timed_manifolds(time_us: f64, is_supported: bool) -> Result<QueryRow, String>
         time_us: Some(time_us),
         ..QueryRow::default()
     })
-}
-
-/// A shape as body and as ground.
-fn in_itself(shape: SharedShape, dispatcher: Arc<Dispatcher>) -> Prepared {
-    Prepared {
-        memory: Memory::of_parry(&*shape),
-        body: shape.clone(),
-        ground: shape,
-        dispatcher,
-        size: Vec::new(),
-        ground_size: Vec::new(),
-    }
 }
