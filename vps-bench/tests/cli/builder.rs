@@ -52,6 +52,8 @@ fn distances_are_within_the_bounds_the_assets_state() {
         }
     }
     assert_eq!(numbers("spheres", "spheres"), [40.0]);
+    // One of them reaches an edge of the box, which the interpolated field rounds off.
+    assert_eq!(numbers("spheres", "wrong_spheres"), [1.0]);
     // The other program agrees.
     let grids = numbers("grids", "near_error_voxels_max");
     assert_eq!(grids.len(), 6);

@@ -82,7 +82,8 @@ impl Voxels {
     }
 }
 
-/// The number of random balls that reach the surface, but do not by the bound of the map.
+/// The number of random balls that reach the surface, but do not by the bound of the map: those at
+/// sharp edges, which lie outside of the interpolated surface by up to the error bound of the field.
 pub(super) fn wrong_spheres(settings: &Settings, mesh: &Mesh, map: &Voxelmap<'_>) -> usize {
     let mut rng = ChaCha8Rng::seed_from_u64(settings.sphere_seed);
     let bounds = map.grid().bounds();
