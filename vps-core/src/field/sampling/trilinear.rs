@@ -94,13 +94,13 @@ impl Trilinear<'_> {
 
     /// The largest error of the values around a point, given the interpolated value.
     fn value_error(&self, interpolated: f32) -> f32 {
-        let accuracy = self.0.error_bounds();
+        let error_bounds = self.0.error_bounds();
         // A value interpolated from one beyond the narrow band is no closer to zero than this.
-        let reach = SQRT_3 * self.voxel_size() + accuracy.beyond + accuracy.in_band;
-        if interpolated.abs() + reach <= accuracy.narrow_band {
-            accuracy.in_band
+        let reach = SQRT_3 * self.voxel_size() + error_bounds.beyond + error_bounds.in_band;
+        if interpolated.abs() + reach <= error_bounds.narrow_band {
+            error_bounds.in_band
         } else {
-            accuracy.beyond
+            error_bounds.beyond
         }
     }
 
@@ -167,7 +167,7 @@ impl Trilinear<'_> {
     #[inline(always)]
     fn bounds_of_discs(&self, discs: &Discs) -> f32x4 {
         let map = self.0;
-        let (s, accuracy) = (map.grid().voxel_size(), map.error_bounds());
+        let (s, error_bounds) = (map.grid().voxel_size(), map.error_bounds());
         let centers = Vectors::from(discs.centers);
         let radii = f32x4::new(discs.radii);
         let sampled = self.sampled(centers);
@@ -202,7 +202,7 @@ impl Trilinear<'_> {
         let smoothed = (radii * radii + 0.75 * s * s).sqrt();
         let change = smoothed.fast_min(radii * SQRT_3);
         let probability = (radii * (SQRT_3 * map.grid().per_metre())).fast_min(f32x4::ONE);
-        let errors = ErrorModel::new(accuracy, SQRT_3 * s + 2.0 * accuracy.beyond);
+        let errors = ErrorModel::new(error_bounds, SQRT_3 * s + 2.0 * error_bounds.beyond);
         let error = errors.error_at(at_center);
         let lipschitz_bound =
             errors.upper_bound(at_center + change + probability * error, probability);
@@ -217,7 +217,7 @@ impl Trilinear<'_> {
         }
         let extrapolation = Extrapolation::new(sampled.clamped, sampled.offset, &map.solid());
         // The interpolated value changes by at most the distance and these terms.
-        let at_clamped = at_center + error + (MAX_SMOOTHING * s + accuracy.beyond);
+        let at_clamped = at_center + error + (MAX_SMOOTHING * s + error_bounds.beyond);
         let exterior_bound = extrapolation.bounds(at_clamped, radii);
         let to_box = centers.minus(centers.clamped(&map.solid())).length();
         let box_bound = errors.upper_bound(radii - to_box + HALF_DIAGONAL * s, f32x4::ONE);
