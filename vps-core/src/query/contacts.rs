@@ -5,7 +5,6 @@ use crate::query::collectors::{AllContacts, AnyContact, DeepestContact};
 use crate::query::contact::Contact;
 use crate::query::observer::Observer;
 use crate::query::posed::Query;
-use crate::simd::multiversion::multiversion;
 
 impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Calls `visit` with every contact, in the order of the points.
@@ -38,7 +37,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
         }
         let mut all = AllContacts::new(self.prediction, visit);
         let range = (0, self.tree.point_count() as u32);
-        multiversion(
+        self.multiversion(
             #[inline(always)]
             || self.test_points(range, &mut all),
         );

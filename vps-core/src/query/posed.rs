@@ -7,6 +7,7 @@ use crate::query::approach::Approach;
 use crate::query::observer::Observer;
 use crate::shell::PointSphereTree;
 use crate::simd::Vectors;
+use crate::simd::multiversion::multiversion;
 
 /// A pointshell posed in a distance field (sections 2.2 to 2.4).
 ///
@@ -153,6 +154,17 @@ impl<'q, F: DistanceField + ?Sized, O: Observer> Query<'q, F, O> {
     pub fn with_hint(self, point: u32) -> Self {
         let hint = Some(point).filter(|&p| (p as usize) < self.tree.point_count());
         Self { hint, ..self }
+    }
+
+    /// Runs a part of the query with the best instruction set of the processor. An observed query is slow
+    /// anyway, and compiled for the target's alone.
+    #[inline(always)]
+    pub(crate) fn multiversion<R>(&self, work: impl FnOnce() -> R) -> R {
+        if O::IS_ACTIVE {
+            work()
+        } else {
+            multiversion(work)
+        }
     }
 
     /// Makes events and hands them to the observer, if there is one.

@@ -8,7 +8,6 @@ use crate::query::collectors::{Collector, TestedPoints};
 use crate::query::observer::{Event, Observer, Score};
 use crate::query::posed::Query;
 use crate::shell::{Cluster, MAX_LEVELS, PointSphereTree};
-use crate::simd::multiversion::multiversion;
 use crate::simd::{LANES, Points, Vectors, first_lanes, lanes_in, padded};
 
 /// The cluster of all points: its level, and its index among all clusters.
@@ -120,7 +119,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Searches the whole tree, and returns the collector.
     #[inline(always)]
     pub(crate) fn collect<C: Collector>(&self, mut collector: C) -> C {
-        multiversion(
+        self.multiversion(
             #[inline(always)]
             || self.search(ROOT, &mut collector),
         );
@@ -130,7 +129,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Searches the whole tree after testing the hint, for collectors that accept a point twice.
     #[inline(always)]
     pub(crate) fn collect_from_hint<C: Collector>(&self, collector: &mut C) {
-        multiversion(
+        self.multiversion(
             #[inline(always)]
             || {
                 let continues = match self.hint {
@@ -297,7 +296,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
             return false;
         }
         let clusters = &self.tree.clusters()[..1];
-        let bound = multiversion(
+        let bound = self.multiversion(
             #[inline(always)]
             || self.penetration_bounds(clusters).1[0],
         );

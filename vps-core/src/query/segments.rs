@@ -6,7 +6,6 @@ use crate::query::contact::Contact;
 use crate::query::observer::Observer;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
-use crate::simd::multiversion::multiversion;
 
 impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
     /// Calls `visit` with the deepest contact of each cluster of a level that has one, in the order
@@ -33,7 +32,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
         let level = level.clamp(1, self.tree.level_count());
         let start = self.tree.level_starts()[level as usize - 1];
         let mut all = AllContacts::new(self.prediction, |_| ());
-        multiversion(
+        self.multiversion(
             #[inline(always)]
             || {
                 self.descend(

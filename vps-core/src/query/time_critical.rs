@@ -9,7 +9,6 @@ use crate::query::contact::Contact;
 use crate::query::observer::Observer;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
-use crate::simd::multiversion::multiversion;
 
 /// The state of a time-critical query when it ends.
 ///
@@ -87,7 +86,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
                 }
                 true
             };
-            multiversion(
+            self.multiversion(
                 #[inline(always)]
                 || self.descend(ROOT, level, &mut all, &mut test),
             );
@@ -114,7 +113,7 @@ impl<F: DistanceField + ?Sized, O: Observer> Query<'_, F, O> {
             tested += u64::from(points.end - points.start);
             self.test_points((points.start, points.end), all)
         };
-        multiversion(
+        self.multiversion(
             #[inline(always)]
             || self.descend(ROOT, leaf_level, &mut all, &mut test),
         );

@@ -168,10 +168,7 @@ mod tests {
 
     /// The results of all queries, to the bit.
     fn results(field: &impl DistanceField, tree: &PointSphereTree<'_>, pose: Pose3) -> String {
-        let work = Work::default();
-        let query = Query::new(tree, field, pose)
-            .with_prediction(0.05)
-            .observed_by(&work);
+        let query = Query::new(tree, field, pose).with_prediction(0.05);
         let (mut all, mut segments) = (Vec::new(), Vec::new());
         query.for_each_contact(|c| all.push(c));
         query.for_each_segment(2, |segment, c| segments.push((segment, c)));
@@ -182,7 +179,7 @@ mod tests {
         let estimate = query.time_critical(Vec3::ZERO, |tested| tested < 100);
         let answers = (query.touches(), query.deepest(), query.closest());
         let manifold = query.manifold::<4>();
-        format!("{all:?} {segments:?} {wrenches:?} {estimate:?} {answers:?} {manifold:?} {work:?}")
+        format!("{all:?} {segments:?} {wrenches:?} {estimate:?} {answers:?} {manifold:?}")
     }
 
     // Compares nothing on a processor without AVX2.

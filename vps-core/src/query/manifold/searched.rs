@@ -13,7 +13,6 @@ use crate::query::contact::Contact;
 use crate::query::observer::Observer;
 use crate::query::posed::Query;
 use crate::query::search::ROOT;
-use crate::simd::multiversion::multiversion;
 
 /// The contacts of a query, some of them buffered.
 struct SearchedCandidates<'q, 't, F: ?Sized, O> {
@@ -81,7 +80,7 @@ where
             && !buffer.includes_low_weights
         {
             buffer.lower_threshold();
-            multiversion(
+            self.query.multiversion(
                 #[inline(always)]
                 || self.query.search(ROOT, buffer),
             );
@@ -93,7 +92,7 @@ where
             found: None,
         };
         if !buffer.is_full {
-            multiversion(
+            self.query.multiversion(
                 #[inline(always)]
                 || buffer.add_to(self.query.tree, &mut best),
             );
