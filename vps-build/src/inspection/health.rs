@@ -122,6 +122,7 @@ mod tests {
         assert_eq!((health.components, health.boundary_loops), (1, 0));
         assert!((health.volume_m3 - 6.0).abs() < 1e-9 && (health.area_m2 - 22.0).abs() < 1e-9);
         assert_eq!((health.thin_fraction, health.degenerate_faces), (0.0, 0));
+        assert!(health.thin_fraction.is_sign_positive());
     }
 
     #[test]

@@ -63,14 +63,16 @@ impl ThinWalls {
         let walls = || points.iter().zip(&walls);
         let thin = walls().filter_map(|(&(_, area), wall)| Some((wall.as_ref()?, area)));
         let mut thin: Vec<(&Wall, f64)> = thin.collect();
-        let total: f64 = points.iter().map(|(_, area)| area).sum();
-        let thin_area: f64 = thin.iter().map(|(_, area)| area).sum();
+        // From 0: the sum of nothing is -0.
+        let sum = |areas: &mut dyn Iterator<Item = f64>| areas.fold(0.0, |sum, area| sum + area);
+        let total = sum(&mut points.iter().map(|(_, area)| *area));
+        let thin_area = sum(&mut thin.iter().map(|(_, area)| *area));
         let is_lost = |wall: &Wall| {
             let field = map.map(Voxelmap::trilinear);
             field.is_some_and(|f| f.signed_distance(wall.middle.as_vec3()) >= 0.0)
         };
         let lost = thin.iter().filter(|(wall, _)| is_lost(wall));
-        let lost: f64 = lost.map(|(_, area)| area).sum();
+        let lost = sum(&mut lost.map(|(_, area)| *area));
         thin.sort_by(|a, b| a.0.thickness.total_cmp(&b.0.thickness));
         let mut passed = 0.0;
         let enough = thin.iter().find(|(_, area)| {
