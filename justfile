@@ -44,7 +44,8 @@ test: (test-with "2014") no-std
 
 # The tests of queries and fields with 50 times as many random cases, all new
 test-long times="50":
-    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-build --test it -- queries conform bounded within
+    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-core --test proofs
+    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-build --test it -- within distances
     VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-rapier --test oracle
 
 # All tests, with new random cases (proptest keeps the failing cases: commit them)
@@ -68,7 +69,6 @@ no-std:
     CARGO_INCREMENTAL=0 cargo build --locked {{ libraries }} --example torus
     target/debug/examples/torus target/torus.vps
     cargo run --locked --release --target-dir target/no-std --manifest-path vps-core/no-std-check/Cargo.toml
-
 
 # Fail if queries take other instructions than reports/query_profile says, by more than 2 % (needs valgrind)
 gate: fetch

@@ -4,7 +4,5 @@ mod brute_force;
 mod distances;
 mod files;
 mod invariants;
-mod observers;
-mod queries;
 mod solids;
 mod support;

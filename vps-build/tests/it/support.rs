@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use vps_build::{BuildOptions, Density, Encoding, Mesh, PointCount, Resolution, build};
-use vps_core::{Asset, Pose3, Quat, Vec3};
+use vps_core::{Asset, Vec3};
 
 /// Cases of a test: few in the usual run, more in the long run.
 pub(crate) fn cases(usual: u32) -> ProptestConfig {
@@ -71,11 +71,4 @@ pub(crate) fn vector(size: f32) -> impl Strategy<Value = Vec3> {
 
 pub(crate) fn direction() -> impl Strategy<Value = Vec3> {
     vector(1.0).prop_map(|v| v.normalize_or(Vec3::Y))
-}
-
-/// Any rotation, and a translation of up to `size` metres along each axis.
-pub(crate) fn pose(size: f32) -> impl Strategy<Value = Pose3> {
-    (direction(), 0.0..6.3_f32, vector(size)).prop_map(|(axis, angle, translation)| {
-        Pose3::from_parts(translation, Quat::from_axis_angle(axis, angle))
-    })
 }

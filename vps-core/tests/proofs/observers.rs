@@ -9,7 +9,8 @@ use vps_core::{
     PointSphereTree, Pose3, Query, Score, Vec3, Weight, Work,
 };
 
-use crate::support::{asset, bumpy_mesh, cases, pose};
+use crate::poses::pose;
+use crate::support::{asset, bumpy_mesh, cases};
 
 /// The events of a query, and its answer.
 fn observed<T>(

@@ -9,7 +9,8 @@ use vps_core::{
     Voxelmap, Weight, Work, Wrench,
 };
 
-use crate::support::{asset, asset_of, bumpy_mesh, cases, density, encoding, pose, vector};
+use crate::poses::pose;
+use crate::support::{asset, asset_of, bumpy_mesh, cases, density, encoding, vector};
 
 fn contacts<F: DistanceField + ?Sized>(query: &Query<'_, F>) -> Vec<Contact> {
     let mut contacts = Vec::new();
