@@ -2,9 +2,11 @@
 
 mod support;
 
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
+use glamx::DVec3;
 use serde_json::Value;
 use vps_build::Mesh;
 use vps_compare::Algorithm;
@@ -175,6 +177,43 @@ fn poses_of_a_file_and_one_algorithm() {
         // A ball of faces is a little smaller than a ball.
         assert!((found - expected).abs() < 0.005, "{found}, {expected}");
     }
+}
+
+#[test]
+fn meshes_far_from_their_origins_are_compared_where_they_are() {
+    // As maps have them. Neither 32-bit vertices nor 32-bit poses would do.
+    let folder = Folder::new("far");
+    let far = |mesh: Mesh, at: DVec3| {
+        let vertices: Vec<_> = mesh.vertices().iter().map(|v| *v + at).collect();
+        obj(&Mesh::new(&vertices, mesh.triangles()).unwrap())
+    };
+    let (at_a, at_b) = (DVec3::new(5e5, 5e6, 100.0), DVec3::new(4e5, 6e6, -20.0));
+    let a = folder.write("a.obj", &far(Mesh::cuboid([1.0; 3]).unwrap(), at_a));
+    let b = folder.write("b.obj", &far(Mesh::icosphere(0.5, 4).unwrap(), at_b));
+    let apart = at_a - at_b;
+    let row = |x: f64| {
+        let [x, y, z] = (apart + DVec3::X * x).to_array();
+        format!("{x},{y},{z},0,0,0,1\n")
+    };
+    let rows = [0.99, 1.01].map(row).concat();
+    let poses = folder.write("poses.csv", &format!("x_m,y_m,z_m,qx,qy,qz,qw\n{rows}"));
+    let csv_path = folder.path("rows.csv");
+    let (code, _, errors) = vps_compare(&[&a, &b, "--poses", &poses, "--csv", &csv_path]);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    let mut reader = csv::Reader::from_path(&csv_path).unwrap();
+    let mut count = 0;
+    for row in reader.deserialize() {
+        let row: HashMap<String, String> = row.unwrap();
+        let number = |name: &str| row[name].parse::<f64>().unwrap();
+        let expected = if row["pose"] == "1" { 0.01 } else { -0.01 };
+        assert!((number("x_m") - (apart.x + 1.0 - expected)).abs() < 1e-9);
+        assert!((number("exact_penetration_m") - expected).abs() < 1e-3);
+        if row["algorithm"] != "voxels" {
+            assert!(number("error_m") < 2e-3, "{row:?}");
+        }
+        count += 1;
+    }
+    assert!(count >= 10);
 }
 
 #[test]

@@ -81,7 +81,7 @@ impl Comparison {
         candidates: &[Candidate],
         rows: &[Row],
     ) -> Self {
-        let exact = || problem.poses.iter().filter_map(|(_, exact)| *exact);
+        let exact = || problem.poses.iter().filter_map(|pose| pose.exact);
         let (certain, uncertain): (Vec<_>, Vec<_>) = exact()
             .map(|e| (problem.is_certain(&e), e.uncertainty_m))
             .partition(|(is_certain, _)| *is_certain);
@@ -104,8 +104,8 @@ impl Comparison {
         let algorithm = |candidate| AlgorithmSummary::of(candidate, rows);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            mesh_a: MeshSummary::of(&args.meshes.mesh_a, &problem.mesh_a, problem, 0),
-            mesh_b: MeshSummary::of(&args.meshes.mesh_b, &problem.mesh_b, problem, 1),
+            mesh_a: MeshSummary::of(&args.meshes.mesh_a, &problem.meshes.a, problem, 0),
+            mesh_b: MeshSummary::of(&args.meshes.mesh_b, &problem.meshes.b, problem, 1),
             poses_file: args.poses.as_ref().map(|path| path.display().to_string()),
             seed: args.poses.is_none().then_some(args.seed),
             spread_m: problem.spread_m,

@@ -1,11 +1,10 @@
 //! Measures every algorithm at every pose.
 
-use rapier3d::math::Pose;
 use serde::Serialize;
 use vps_compare::oracle::ExactPenetration;
 
 use super::candidate::Candidate;
-use super::problem::Problem;
+use super::problem::{Problem, ProblemPose};
 use super::progress::Progress;
 use super::worker::{QueryRequest, QueryResult};
 
@@ -14,13 +13,13 @@ use super::worker::{QueryRequest, QueryResult};
 pub(super) struct Row {
     /// Counted from 1.
     pub(super) pose: usize,
-    pub(super) x_m: f32,
-    pub(super) y_m: f32,
-    pub(super) z_m: f32,
-    pub(super) qx: f32,
-    pub(super) qy: f32,
-    pub(super) qz: f32,
-    pub(super) qw: f32,
+    pub(super) x_m: f64,
+    pub(super) y_m: f64,
+    pub(super) z_m: f64,
+    pub(super) qx: f64,
+    pub(super) qy: f64,
+    pub(super) qz: f64,
+    pub(super) qw: f64,
     pub(super) algorithm: String,
     /// `ok`, or why there is no answer.
     pub(super) status: String,
@@ -59,13 +58,13 @@ pub(super) fn measure(
 ) -> Vec<Row> {
     let mut rows = Vec::new();
     let count = problem.poses.len();
-    for (number, (pose, exact)) in (1..).zip(&problem.poses) {
-        let request = QueryRequest::of(pose, problem.prediction_m);
+    for (number, pose) in (1..).zip(&problem.poses) {
+        let request = QueryRequest::of(&pose.local, problem.prediction_m);
         for candidate in &mut *candidates {
             progress.set(format!("pose {number} of {count}: {}", candidate.name));
             let result = candidate.query(&request);
             let name = candidate.name.to_string();
-            rows.push(Row::of(number, pose, exact.as_ref(), problem, name, result));
+            rows.push(Row::of(number, pose, problem, name, result));
         }
     }
     rows
@@ -74,12 +73,12 @@ pub(super) fn measure(
 impl Row {
     fn of(
         number: usize,
-        pose: &Pose,
-        exact: Option<&ExactPenetration>,
+        pose: &ProblemPose,
         problem: &Problem,
         algorithm: String,
         result: Result<QueryResult, String>,
     ) -> Self {
+        let (of_meshes, exact) = (&pose.of_meshes, pose.exact.as_ref());
         let status = result.as_ref().err().cloned();
         let result = result.ok();
         let penetration_m = result.as_ref().and_then(|a| a.penetration_m);
@@ -87,13 +86,13 @@ impl Row {
         let error = |(found, exact): (f64, &ExactPenetration)| (found - exact.penetration_m).abs();
         Self {
             pose: number,
-            x_m: pose.translation.x,
-            y_m: pose.translation.y,
-            z_m: pose.translation.z,
-            qx: pose.rotation.x,
-            qy: pose.rotation.y,
-            qz: pose.rotation.z,
-            qw: pose.rotation.w,
+            x_m: of_meshes.translation.x,
+            y_m: of_meshes.translation.y,
+            z_m: of_meshes.translation.z,
+            qx: of_meshes.rotation.x,
+            qy: of_meshes.rotation.y,
+            qz: of_meshes.rotation.z,
+            qw: of_meshes.rotation.w,
             algorithm,
             status: status.unwrap_or_else(|| "ok".into()),
             contacts: result.as_ref().map(|a| a.contacts),

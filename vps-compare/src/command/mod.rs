@@ -5,6 +5,7 @@ mod candidate;
 mod catch_panic;
 mod comparison;
 mod explain;
+mod frames;
 mod measure;
 mod options;
 mod poses;

@@ -3,6 +3,7 @@
 use std::f32::consts::TAU;
 use std::path::Path;
 
+use glamx::{DPose3, DQuat, DVec3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rapier3d::math::{Pose, Rotation, Vector};
@@ -14,10 +15,10 @@ use super::Error;
 const COLUMNS: [&str; 7] = ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"];
 
 /// Largest difference of the length of a rotation from one.
-const LENGTH_TOLERANCE: f32 = 1e-3;
+const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// Reads a CSV file with a pose per row.
-pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
+/// Reads a CSV file with a pose of the meshes per row.
+pub(super) fn read(path: &Path) -> Result<Vec<DPose3>, Error> {
     let name = path.display();
     let bytes = std::fs::read(path).map_err(|e| format!("{name}: {e}"))?;
     let mut reader = csv::ReaderBuilder::new()
@@ -47,16 +48,16 @@ pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
     for record in reader.records() {
         let record = record.map_err(at)?;
         let line = record.position().map_or(1, csv::Position::line);
-        let mut values = [0.0_f32; 7];
+        let mut values = [0.0_f64; 7];
         for ((value, place), column) in values.iter_mut().zip(places).zip(COLUMNS) {
             let text = &record[place];
-            let number = text.parse().ok().filter(|n: &f32| n.is_finite());
+            let number = text.parse().ok().filter(|n: &f64| (*n as f32).is_finite());
             *value = number.ok_or_else(|| {
                 format!("{name}:{line}: {column}: `{text}` is not a finite number")
             })?;
         }
         let [x, y, z, qx, qy, qz, qw] = values;
-        let rotation = Rotation::from_xyzw(qx, qy, qz, qw);
+        let rotation = DQuat::from_xyzw(qx, qy, qz, qw);
         let length = rotation.length();
         if (length - 1.0).abs() > LENGTH_TOLERANCE {
             return Err(format!(
@@ -64,7 +65,8 @@ pub(super) fn read(path: &Path) -> Result<Vec<Pose>, Error> {
             )
             .into());
         }
-        poses.push(Pose::from_parts(Vector::new(x, y, z), rotation.normalize()));
+        let translation = DVec3::new(x, y, z);
+        poses.push(DPose3::from_parts(translation, rotation.normalize()));
     }
     if poses.is_empty() {
         return Err(format!("{name}: no pose: give at least one row below the header").into());
@@ -78,7 +80,7 @@ const MAX_DRAWS: usize = 1000;
 /// Separation of touching solids, relative to the size of both.
 const TOUCHING: f64 = 1e-5;
 
-/// Random poses around first contact. Orientation and direction are random; B is moved from afar
+/// Random poses, between the local frames, around first contact. Orientation and direction are random; B is moved from afar
 /// along the direction to where it first touches A, and then further or back by a distance: that of
 /// the i-th of `count` poses is random within the i-th of `count` equal parts of -`spread_m` to
 /// `spread_m`.

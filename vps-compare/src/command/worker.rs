@@ -54,10 +54,10 @@ pub(super) fn work(name: &str, args: &Args) -> Result<(), Error> {
     let mut algorithms = args.algorithms()?.into_iter();
     let algorithm = algorithms.find(|algorithm| algorithm.key() == name);
     let algorithm = algorithm.ok_or_else(|| format!("`{name}` takes no part"))?;
-    let (ground, body) = problem::meshes(&args.meshes)?;
+    let meshes = problem::meshes(&args.meshes)?;
     send(&Ready)?;
     let start = Instant::now();
-    let prepared = catch_panic(|| prepare::prepare(&algorithm, args, [&ground, &body]));
+    let prepared = catch_panic(|| prepare::prepare(&algorithm, args, [&meshes.a, &meshes.b]));
     let prepare_s = start.elapsed().as_secs_f64();
     send(&prepared.as_ref().map(|p| PreparedInfo::of(p, prepare_s)))?;
     let Ok(prepared) = prepared else {

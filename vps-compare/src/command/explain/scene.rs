@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use glamx::DVec3;
+use glamx::{DPose3, DVec3};
 use rapier3d::math::Pose;
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::FeatureId;
@@ -14,6 +14,7 @@ use vps_rapier::{PairContact, PairEvent, VpsDispatcher, VpsShape};
 
 use super::ExplainArgs;
 use crate::command::args::SIZES;
+use crate::command::frames::Frames;
 use crate::command::problem::{default_prediction, meshes};
 use crate::command::{Error, poses};
 
@@ -25,7 +26,7 @@ pub(super) struct Scene {
     /// The row of the pose, counted from 1.
     pub(super) row: usize,
     /// The pose of B in the frame of A, as given.
-    pub(super) pose: Pose,
+    pub(super) pose: DPose3,
     pub(super) prediction_m: f64,
     shapes: [VpsShape; 2],
     /// The pose of the asset of B in the frame of the asset of A.
@@ -42,27 +43,27 @@ impl Scene {
             let (row, count) = (args.row, poses.len());
             format!("--row {row}: the poses of {poses_file} are 1 to {count}")
         })?;
-        let (mesh_a, mesh_b) = meshes(&args.meshes)?;
+        let meshes = meshes(&args.meshes)?;
         let paths = [&args.meshes.mesh_a, &args.meshes.mesh_b];
         let files = paths.map(|path| path.display().to_string());
-        let [a, b] = [(&mesh_a, &files[0]), (&mesh_b, &files[1])].map(|(mesh, file)| {
+        let [a, b] = [(&meshes.a, &files[0]), (&meshes.b, &files[1])].map(|(mesh, file)| {
             let built = build(mesh, &options(args), &|_| ());
             built.map_err(|e| format!("{file}: {e}"))
         });
         let (a, b) = (a?.asset, b?.asset);
-        let [origin_a, origin_b] = [&a, &b].map(|asset| DVec3::from_array(asset.origin));
-        let translation =
-            pose.translation.as_dvec3() + pose.rotation.as_dquat() * origin_b - origin_a;
+        let Frames([in_a, in_b]) = meshes.frames;
+        let [of_a, of_b] = [&a, &b].map(|asset| DVec3::from_array(asset.origin));
+        let frames = Frames([in_a + of_a, in_b + of_b]);
         let prediction_m = args.prediction;
         Ok(Self {
             files,
             poses_file,
             row: args.row,
             pose,
-            prediction_m: prediction_m.unwrap_or_else(|| default_prediction([&mesh_a, &mesh_b])),
+            prediction_m: prediction_m.unwrap_or_else(|| default_prediction(&meshes)),
             shapes: [a, b].map(|asset| VpsShape::new(Arc::new(asset))),
-            asset_pose: Pose::from_parts(translation.as_vec3(), pose.rotation),
-            origin: origin_a,
+            asset_pose: frames.to_local(&pose),
+            origin: in_a + of_a,
         })
     }
 

@@ -18,7 +18,7 @@ pub(super) struct Story {
     /// The row of the pose, counted from 1.
     pub(super) row: usize,
     /// x, y, z in metres, and qx, qy, qz, qw.
-    pub(super) pose: [f32; 7],
+    pub(super) pose: [f64; 7],
     pub(super) prediction_m: f64,
     /// The shells that were asked.
     pub(super) shells: Vec<ShellStory>,
