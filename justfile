@@ -44,7 +44,7 @@ test: (test-with "2014") no-std
 
 # The tests of queries and fields with 50 times as many random cases, all new
 test-long times="50":
-    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-core --test proofs
+    VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-core-proofs
     VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-build --test it -- within distances
     VPS_TEST_TIMES={{ times }} cargo test --locked -p vps-rapier --test oracle
 
