@@ -25,7 +25,7 @@ use crate::query::event::PairEvent;
 use crate::query::motion::{RigidMotions, Translation};
 use crate::query::pair::Pair;
 use crate::query::pair_contact::PairContact;
-use crate::query::shell_in_field::Sampling;
+use crate::query::shell_in_field::{ContactPoints, Sampling};
 use crate::reduce::Manifolds;
 use crate::warnings::set_connected;
 use crate::workspace::mark;
@@ -38,6 +38,8 @@ use crate::workspace::mark;
 pub struct VpsDispatcher {
     /// How voxelmaps are sampled.
     pub sampling: Sampling,
+    /// Which point of the surface a contact has.
+    pub contact_points: ContactPoints,
     /// Which contacts an engine gets.
     pub manifolds: Manifolds,
 }
@@ -64,7 +66,7 @@ impl VpsDispatcher {
         if let Some(compound) = as_compound_with_vps(g2) {
             return Ok(Task::PartsOfSecond(compound));
         }
-        let pair = Pair::of(g1, g2, self.sampling);
+        let pair = Pair::of(g1, g2, self.sampling, self.contact_points);
         pair.map(Task::Pair).ok_or(Unsupported)
     }
 

@@ -79,7 +79,7 @@ pub use dispatcher::VpsDispatcher;
 pub use field::shape_field::ShapeField;
 pub use query::event::{ContactEvent, PairDropReason, PairEvent, TurnReason};
 pub use query::pair_contact::PairContact;
-pub use query::shell_in_field::Sampling;
+pub use query::shell_in_field::{ContactPoints, Sampling};
 pub use reduce::Manifolds;
 pub use set_up::{narrow_phase, set_up};
 #[cfg(feature = "build")]

@@ -5,7 +5,7 @@ use rapier3d::parry::shape::SharedShape;
 use serde::{Deserialize, Serialize};
 use vps_build::{BuildOptions, Density, Mesh, PointCount, Resolution};
 use vps_core::Asset;
-use vps_rapier::{Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
+use vps_rapier::{ContactPoints, Manifolds, Role, Sampling, VpsDispatcher, VpsShape};
 
 use crate::algorithm::{AssetSource, CollisionAlgorithm, PrepareError, Sizes};
 use crate::algorithms::parry_pair::cuboid;
@@ -32,6 +32,9 @@ pub struct Vps {
     /// How a voxelmap is sampled.
     #[serde(with = "SamplingName")]
     pub sampling: Sampling,
+    /// Which point of the surface a contact has.
+    #[serde(with = "ContactPointsName")]
+    pub contact_points: ContactPoints,
     /// The level whose clusters give a contact each (section 2.4), 1 at the top. Without it there
     /// are four contacts that span the largest area.
     pub segments: Option<u32>,
@@ -56,6 +59,14 @@ enum SamplingName {
     Local,
 }
 
+/// Names of contact points in files.
+#[derive(Deserialize, Serialize)]
+#[serde(remote = "ContactPoints", rename_all = "snake_case")]
+enum ContactPointsName {
+    Refined,
+    Shell,
+}
+
 impl Default for Vps {
     /// The defaults of the builder, with 10 000 points; a box is exact.
     fn default() -> Self {
@@ -66,6 +77,7 @@ impl Default for Vps {
             voxel_size_m: None,
             margin: options.margin,
             sampling: Sampling::default(),
+            contact_points: ContactPoints::default(),
             segments: None,
             ground_voxel_size_m: None,
             ground_margin: None,
@@ -183,6 +195,7 @@ impl Vps {
         };
         let dispatcher = VpsDispatcher {
             sampling: self.sampling,
+            contact_points: self.contact_points,
             manifolds: self
                 .segments
                 .map_or(Manifolds::Reduced, Manifolds::Segments),

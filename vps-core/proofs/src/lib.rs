@@ -6,6 +6,7 @@ mod fields;
 mod observers;
 mod poses;
 mod queries;
+mod refinement;
 // The random solids are those on which the builder is tested.
 #[path = "../../../vps-build/tests/it/support.rs"]
 mod support;

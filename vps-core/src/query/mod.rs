@@ -8,6 +8,7 @@ mod contacts;
 mod manifold;
 pub(crate) mod observer;
 pub(crate) mod posed;
+mod refinement;
 mod search;
 mod segments;
 mod sweep;

@@ -33,7 +33,8 @@ pub enum PairEvent {
 pub enum ContactEvent {
     /// A shell or a sampled edge has it, or it is evaluated anew.
     Found,
-    /// It lies exactly where a contact lies that reduction keeps.
+    /// It lies where another contact does: exactly where one lies that reduction keeps, or refined to the
+    /// same deepest point of a surface.
     Merged,
     /// Its normal changes.
     NormalTurned {

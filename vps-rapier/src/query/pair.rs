@@ -5,7 +5,7 @@ use vps_core::{Pose3, Vec3};
 
 use super::edge_sampler::EdgeSampler;
 use super::pair_contact::{PairContact, deeper};
-use super::shell_in_field::{Sampling, ShellInField};
+use super::shell_in_field::{ContactPoints, Sampling, ShellInField};
 use crate::precision::core_real;
 use crate::shape::{Role, VpsShape};
 
@@ -31,21 +31,31 @@ pub(crate) struct Pair<'s> {
 
 impl<'s> Pair<'s> {
     /// `None` if neither shape is a VPS shape.
-    pub(crate) fn of(g1: &'s dyn Shape, g2: &'s dyn Shape, sampling: Sampling) -> Option<Self> {
+    pub(crate) fn of(
+        g1: &'s dyn Shape,
+        g2: &'s dyn Shape,
+        sampling: Sampling,
+        contact_points: ContactPoints,
+    ) -> Option<Self> {
         let vps = |g: &'s dyn Shape| g.as_shape::<VpsShape>();
         match (vps(g1), vps(g2)) {
             (None, None) => None,
-            (Some(a), None) => Some(Self::with_parry_shape(a, g2, true)),
-            (None, Some(b)) => Some(Self::with_parry_shape(b, g1, false)),
-            (Some(a), Some(b)) => Some(Self::of_vps_shapes(a, b, sampling)),
+            (Some(a), None) => Some(Self::with_parry_shape(a, g2, contact_points, true)),
+            (None, Some(b)) => Some(Self::with_parry_shape(b, g1, contact_points, false)),
+            (Some(a), Some(b)) => Some(Self::of_vps_shapes(a, b, sampling, contact_points)),
         }
     }
 
-    fn with_parry_shape(vps: &'s VpsShape, other: &'s dyn Shape, vps_is_first: bool) -> Self {
+    fn with_parry_shape(
+        vps: &'s VpsShape,
+        other: &'s dyn Shape,
+        contact_points: ContactPoints,
+        vps_is_first: bool,
+    ) -> Self {
         // parry gives half of the thickness of a box.
         let other_thickness = 2.0 * core_real(other.ccd_thickness());
         Self {
-            primary: ShellInField::in_shape(vps, other, vps_is_first),
+            primary: ShellInField::in_shape(vps, other, contact_points, vps_is_first),
             secondary: None,
             needs_secondary: false,
             edge_sampler: Some(EdgeSampler::new(other, vps, !vps_is_first)),
@@ -53,7 +63,12 @@ impl<'s> Pair<'s> {
         }
     }
 
-    fn of_vps_shapes(a: &'s VpsShape, b: &'s VpsShape, sampling: Sampling) -> Self {
+    fn of_vps_shapes(
+        a: &'s VpsShape,
+        b: &'s VpsShape,
+        sampling: Sampling,
+        contact_points: ContactPoints,
+    ) -> Self {
         // The finer shell is the primary: few points of a large body meet a small one, if any.
         let density = |s: &VpsShape| (s.spacing(), s.asset().tree.point_count());
         let first_is_shell = match (a.role(), b.role()) {
@@ -71,11 +86,12 @@ impl<'s> Pair<'s> {
                 && is_mixed(b)
                 && field.thickness() < MIN_THICKNESS * shell.spacing();
         Self {
-            primary: ShellInField::in_map(shell, field, sampling, first_is_shell),
+            primary: ShellInField::in_map(shell, field, sampling, contact_points, first_is_shell),
             secondary: Some(ShellInField::in_map(
                 field,
                 shell,
                 sampling,
+                contact_points,
                 !first_is_shell,
             )),
             needs_secondary,
@@ -166,6 +182,13 @@ impl<'s> Pair<'s> {
             .filter_map(|shell| shell.deepest_of(pos12, prediction, may_accept, &accept));
         let deepest = by_shells.chain(by_edges.into_iter().filter(accept));
         deepest.reduce(deeper)
+    }
+
+    /// Distance in metres within which contacts with the same normal are of one deepest point.
+    pub(crate) fn merging_distance(&self) -> f32 {
+        self.pose_independent_shells()
+            .map(ShellInField::merging_distance)
+            .fold(f32::INFINITY, f32::min)
     }
 
     /// The largest size of the voxels of the fields in metres, 0 if all are exact.

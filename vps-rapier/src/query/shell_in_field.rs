@@ -27,6 +27,20 @@ pub enum Sampling {
     Local,
 }
 
+/// Which point of the surface a contact has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactPoints {
+    /// The deepest point of the surface around a point of the shell (contact refinement): depth is as
+    /// exact as the fields, and changes smoothly as a body rolls.
+    #[default]
+    Refined,
+    /// The point of the shell itself, as in the paper: depth is as exact as the points are close.
+    Shell,
+}
+
+/// Distance of refined contacts of one deepest point, in spacings: points of a shell are further apart.
+const MERGING_DISTANCE: f32 = 0.5;
+
 /// Thickness of the solid behind an open surface, relative to the diagonal of the shell in it.
 const SKIN_THICKNESS: f32 = 0.1;
 
@@ -37,12 +51,31 @@ const SEARCH_GROWTH: f32 = 4.0;
 pub(crate) struct ShellInField<'s> {
     tree: &'s PointSphereTree<'static>,
     field: Field<'s>,
+    /// What contacts are refined by, unless they are points of the shell.
+    refinement: Option<Refinement<'s>>,
     /// The VPS shape of the field, if it is one.
     field_shape: Option<&'s VpsShape>,
     /// Additional error of the field beyond the narrow band, in metres.
     far_error: f32,
     /// Whether the shell belongs to the first of the two shapes.
     shell_is_first: bool,
+}
+
+/// The surface that the points of a shell are samples of.
+struct Refinement<'s> {
+    /// In the frame of the shell.
+    surface: Trilinear<'s>,
+    /// Spacing of the points in metres.
+    spacing: f32,
+}
+
+impl<'s> Refinement<'s> {
+    fn of(shell: &'s VpsShape, contact_points: ContactPoints) -> Option<Self> {
+        (contact_points == ContactPoints::Refined).then(|| Self {
+            surface: shell.asset().voxelmap.trilinear(),
+            spacing: shell.spacing(),
+        })
+    }
 }
 
 enum Field<'s> {
@@ -127,11 +160,13 @@ impl<'s> ShellInField<'s> {
         shell: &'s VpsShape,
         field: &'s VpsShape,
         sampling: Sampling,
+        contact_points: ContactPoints,
         shell_is_first: bool,
     ) -> Self {
         let map = &field.asset().voxelmap;
         Self {
             tree: &shell.asset().tree,
+            refinement: Refinement::of(shell, contact_points),
             field: match sampling {
                 Sampling::Trilinear => Field::Trilinear(map.trilinear()),
                 Sampling::Local => Field::Local(map.local()),
@@ -146,6 +181,7 @@ impl<'s> ShellInField<'s> {
     pub(crate) fn in_shape(
         shell: &'s VpsShape,
         shape: &'s dyn Shape,
+        contact_points: ContactPoints,
         shell_is_first: bool,
     ) -> Self {
         let thickness = SKIN_THICKNESS * shell.asset().tree.bounds().extents().length();
@@ -166,6 +202,7 @@ impl<'s> ShellInField<'s> {
         Self {
             tree: &shell.asset().tree,
             field,
+            refinement: Refinement::of(shell, contact_points),
             field_shape: None,
             far_error: 0.0,
             shell_is_first,
@@ -186,6 +223,7 @@ impl<'s> ShellInField<'s> {
     pub(crate) fn touches(&self, pos12: &Pose3) -> bool {
         let pose = self.shell_to_field(pos12);
         with_field!(self, &pose, 0.0, field => Query::new(self.tree, field, pose).touches())
+            || self.refinement.is_some() && self.deepest(pos12, 0.0).is_some()
     }
 
     /// The deepest contact up to `prediction` metres away.
@@ -196,12 +234,17 @@ impl<'s> ShellInField<'s> {
             Field::Other(local) => (prediction.min(self.size()), Some(local)),
             _ => (prediction, None),
         };
+        // A point further out may stand for a deepest point within.
+        let spacing = self.refinement.as_ref().map_or(0.0, |r| r.spacing);
         loop {
-            let found = with_field!(self, &pose, within, field => {
-                Query::new(self.tree, field, pose).with_prediction(within).deepest()
+            let reach = within + spacing;
+            let found = with_field!(self, &pose, reach, field => {
+                Query::new(self.tree, field, pose).with_prediction(reach).deepest()
             });
-            if let Some(contact) = found {
-                return Some(self.pair_contact(&pose, &contact, within));
+            let refined = found.map(|contact| self.refined_contact(&pose, &contact, reach));
+            let refined = refined.filter(|contact| contact.penetration >= -within);
+            if refined.is_some() {
+                return refined;
             }
             if within >= prediction {
                 return None;
@@ -327,7 +370,7 @@ impl<'s> ShellInField<'s> {
             query.observed_by(self.observer(observer)).manifold()
         });
         let contacts = manifold.contacts().iter();
-        found.extend(contacts.map(|contact| self.pair_contact(&pose, contact, prediction)));
+        found.extend(contacts.map(|contact| self.refined_contact(&pose, contact, prediction)));
     }
 
     /// The observer of the query of this shell.
@@ -358,7 +401,7 @@ impl<'s> ShellInField<'s> {
             normal,
             penetration: with_field!(self, &pose, 0.0, field => field.penetration(at, turned)),
         };
-        Some(self.pair_contact(&pose, &contact, 0.0))
+        Some(self.refined_contact(&pose, &contact, 0.0))
     }
 
     /// Adds the deepest contact of each segment of a level, identified by the segment.
@@ -373,7 +416,7 @@ impl<'s> ShellInField<'s> {
         let pose = self.shell_to_field(pos12);
         let level = level.clamp(1, self.tree.level_count());
         let visit = |segment, contact| {
-            let mut contact = self.pair_contact(&pose, &contact, prediction);
+            let mut contact = self.refined_contact(&pose, &contact, prediction);
             contact.ids = self.in_order(PackedFeatureId::face(segment), PackedFeatureId::UNKNOWN);
             found.push(contact);
         };
@@ -451,6 +494,26 @@ impl<'s> ShellInField<'s> {
         } else {
             [of_field, of_shell]
         }
+    }
+
+    /// The contact of the pair at the deepest point of the surface around the point of the shell.
+    fn refined_contact(&self, pose: &Pose3, contact: &Contact, prediction: f32) -> PairContact {
+        let contact = match &self.refinement {
+            Some(Refinement { surface, spacing }) => {
+                with_field!(self, pose, prediction, field => {
+                    Query::new(self.tree, field, *pose).refine(contact, surface, *spacing)
+                })
+            }
+            None => *contact,
+        };
+        self.pair_contact(pose, &contact, prediction)
+    }
+
+    /// Distance in metres within which two contacts with the same normal are of one deepest point, where
+    /// contacts are refined; otherwise 0.
+    pub(crate) fn merging_distance(&self) -> f32 {
+        let refinement = self.refinement.as_ref();
+        refinement.map_or(0.0, |refinement| MERGING_DISTANCE * refinement.spacing)
     }
 
     /// The contact of the pair, with the normal of the field, which does not depend on how the shell

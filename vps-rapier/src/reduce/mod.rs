@@ -3,17 +3,19 @@
 //! For [`Manifolds::Reduced`] the steps of [`contacts`] are:
 //! 1. Each shell gives the deepest contact and those that spread over the largest area, each sampled
 //!    edge its contact.
-//! 2. Contacts of several sources are reduced together ([`select`]).
-//! 3. Normals on which field and shell disagree are resolved ([`normals`]).
-//! 4. At most four contacts of each normal are kept ([`select`]).
-//! 5. The contacts of the step before stay if they are as good ([`persistence`]).
-//! 6. Deep inside, contacts that push against each other are turned to one direction
+//! 2. Contacts refined to the same deepest point are merged ([`merge`]).
+//! 3. Contacts of several sources are reduced together ([`select`]).
+//! 4. Normals on which field and shell disagree are resolved ([`normals`]).
+//! 5. At most four contacts of each normal are kept ([`select`]).
+//! 6. The contacts of the step before stay if they are as good ([`persistence`]).
+//! 7. Deep inside, contacts that push against each other are turned to one direction
 //!    ([`deep_penetration`]).
 //!
 //! All constants of the pipeline are in [`parameters`]. Each step tells an observer what becomes of
 //! contacts ([`event`](crate::query::event)).
 
 mod deep_penetration;
+mod merge;
 mod normals;
 mod parameters;
 pub(crate) mod persistence;
@@ -25,6 +27,7 @@ use rapier3d::parry::shape::PackedFeatureId;
 use vps_core::{Approach, Observer, Pose3};
 
 use self::deep_penetration::recover_deep_penetration;
+use self::merge::merge;
 use self::normals::resolve_normals;
 use self::parameters::{MAX_CONTACTS, PERSISTENCE_TOLERANCE};
 use self::persistence::{re_evaluate, should_persist};
@@ -86,11 +89,13 @@ pub(crate) fn contacts(
     match manifolds {
         Manifolds::Reduced => {
             let mut persistent = re_evaluate(pair, pos12, previous, &found);
+            merge(&mut found, pair.merging_distance(), &of_new);
             if has_edges || pair.secondary(pos12).is_some() {
                 reduce::<MAX_CONTACTS>(&mut found, prediction, approach, &of_new);
             }
             if let Some(persistent) = &mut persistent {
                 of_previous.observe_all(persistent, ContactEvent::Found);
+                merge(persistent, pair.merging_distance(), &of_previous);
                 resolve_normals(persistent, pos12, &of_previous);
                 limit_per_normal(persistent, &of_previous);
             }
