@@ -12,7 +12,7 @@ proptest! {
     #![proptest_config(cases(48))]
 
     /// A refined contact is as deep as its point at least, lies on the surface of the exact solid within
-    /// the error of its field, near its point, and has the penetration of its place.
+    /// the error of its field, and has the penetration of its place.
     #[test]
     fn refined_contacts_lie_on_the_surface_and_are_no_shallower(
         (mesh, other) in (bumpy_mesh(), bumpy_mesh()), points in 30..400_u32, pose in pose(0.5),
@@ -23,7 +23,7 @@ proptest! {
         );
         let exact = ExactSolid::new(&mesh, Sign::default()).unwrap();
         let surface = shell.voxelmap.trilinear();
-        let reach = (mesh.area() / f64::from(points)).sqrt() as f32;
+        let spacing = (mesh.area() / f64::from(points)).sqrt() as f32;
         let fields: [&dyn DistanceField; 3] =
             [&other.voxelmap.trilinear(), &Cuboid::new(Vec3::splat(0.3)), &HalfSpace::new(Vec3::Y)];
         for field in fields {
@@ -31,7 +31,7 @@ proptest! {
             let mut contacts = Vec::new();
             query.for_each_contact(|c| contacts.push(c));
             for sample in contacts {
-                let refined = query.refine(&sample, &surface, reach);
+                let refined = query.refine(&sample, &surface, spacing);
                 prop_assert!(refined.penetration >= sample.penetration);
                 prop_assert_eq!(refined.point_index, sample.point_index);
                 if refined == sample {
@@ -40,9 +40,7 @@ proptest! {
                 let at = pose.transform_point(refined.position);
                 let there = field.penetration(at, pose.rotation * refined.normal);
                 prop_assert!((refined.penetration - there).abs() < 1e-5);
-                // Pulled in to the reach and projected on the surface.
                 let off = surface.error_bound() + 0.1 * surface.voxel_size();
-                prop_assert!(refined.position.distance(sample.position) <= 1.5 * reach + off);
                 let exact = exact.penetration(refined.position.as_dvec3(), 0).penetration_m;
                 prop_assert!(exact.abs() as f32 <= off, "{exact} {off}");
             }
@@ -53,10 +51,10 @@ proptest! {
 /// The deepest of all refined contacts of a coarse shell, and of its points.
 fn deepest(ball: &Mesh, points: u32, field: &dyn DistanceField, pose: Pose3) -> [f32; 2] {
     let shell = asset(ball, points, Encoding::Distances(None));
-    let reach = (ball.area() / f64::from(points)).sqrt() as f32;
+    let spacing = (ball.area() / f64::from(points)).sqrt() as f32;
     let query = Query::new(&shell.tree, field, pose).with_prediction(0.1);
     let sample: Contact = query.deepest().unwrap();
-    let refined = query.refine(&sample, &shell.voxelmap.trilinear(), reach);
+    let refined = query.refine(&sample, &shell.voxelmap.trilinear(), spacing);
     [refined.penetration, sample.penetration]
 }
 

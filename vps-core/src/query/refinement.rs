@@ -7,27 +7,34 @@ use crate::query::contact::Contact;
 use crate::query::posed::Query;
 
 /// Steps of the ascent at most. Each about squares the error.
-const MAX_STEPS: u32 = 4;
+const MAX_STEPS: u32 = 6;
 
-/// Gain of penetration below which the ascent ends, relative to the reach.
+/// Gain of penetration below which the ascent ends, relative to the spacing.
 const NEGLIGIBLE_GAIN: f32 = 1e-3;
+
+/// Largest distance of the point where the slope vanishes, in steps, at which the field counts as curved.
+const MAX_STRIDE: f32 = 8.0;
 
 /// Newton steps that bring a point back to the surface, of which it is off by the square of a step.
 const PROJECTIONS: u32 = 2;
 
 impl<F: DistanceField + ?Sized, O> Query<'_, F, O> {
-    /// Moves a contact over the surface of the shell's body to where penetration is largest, within about
-    /// `reach` metres of its point; with the spacing of the points as the reach, to the deepest point of
-    /// the piece of the surface that it stands for. `surface` is the field of the shell's own body, in
-    /// the shell frame.
+    /// Moves a contact over the surface of the shell's body to where penetration is largest. `surface` is
+    /// the field of the shell's own body, in the shell frame, and `spacing` that of the points of the shell
+    /// in metres.
+    ///
+    /// Where the surface is curved in the field, as that of a ball on the ground, contacts are the local
+    /// maxima of penetration: samples around one all come to it. Where penetration rises evenly, as on a
+    /// face that is tilted against the ground, a contact stays within about `spacing` of its point, in the
+    /// piece of the surface that the point stands for.
     ///
     /// The contact is at least as deep as before, and lies on the surface to within
     /// [`error_bound`](DistanceField::error_bound) of `surface`, so that it is no deeper than the deepest
     /// point by more than that. Its normal is that of `surface`. It stays on its side of a thin wall.
     ///
     /// An ascent along the surface with secant steps, until a step gains less than a thousandth of the
-    /// reach. Costs one gradient where the surface lies flat in the field, otherwise two or three
-    /// evaluations of both fields a step, for one to three steps.
+    /// spacing. Costs one gradient where the surface lies flat in the field, otherwise one or two
+    /// evaluations of both fields a step, for one to six steps.
     ///
     /// ```
     /// use vps_core::{Ball, HalfSpace, PointSphereTree, Pose3, Query, Vec3};
@@ -44,7 +51,7 @@ impl<F: DistanceField + ?Sized, O> Query<'_, F, O> {
     /// assert!(contact.position.distance(Vec3::new(0.0, -0.5, 0.0)) < 1e-3);
     /// # Ok::<(), vps_core::TreeError>(())
     /// ```
-    pub fn refine<S>(&self, contact: &Contact, surface: &S, reach: f32) -> Contact
+    pub fn refine<S>(&self, contact: &Contact, surface: &S, spacing: f32) -> Contact
     where
         S: DistanceField + ?Sized,
     {
@@ -52,35 +59,35 @@ impl<F: DistanceField + ?Sized, O> Query<'_, F, O> {
             query: self,
             surface,
             start: contact,
-            reach,
         };
-        let negligible = NEGLIGIBLE_GAIN * reach;
-        let (mut best, mut step) = (*contact, reach);
+        let (mut best, mut step) = (*contact, spacing);
         for _ in 0..MAX_STEPS {
             let rise = ascent.rise(&best);
             let slope = rise.length();
-            if slope.is_nan() || slope * step <= negligible {
+            if slope.is_nan() || slope * step <= NEGLIGIBLE_GAIN * spacing {
                 break;
             }
             let direction = rise / slope;
             let ahead = ascent.contact_at(best.position + direction * step);
-            let slope_ahead = ascent.rise(&ahead).dot(direction);
-            let next = if slope_ahead < 0.0 {
-                // Past the deepest point: as far as the slope falls to zero, if it falls evenly.
-                step *= slope / (slope - slope_ahead);
-                let between = ascent.contact_at(best.position + direction * step);
-                if between.is_deeper_than(Some(&ahead)) {
-                    between
+            // Where the slope vanishes if it falls evenly.
+            let fall = slope - ascent.rise(&ahead).dot(direction);
+            let to_top = step * slope / fall;
+            let is_curved = fall > 0.0 && to_top <= MAX_STRIDE * step;
+            let next = if is_curved {
+                let top = ascent.contact_at(best.position + direction * to_top);
+                step = 0.5 * to_top;
+                if top.penetration > ahead.penetration {
+                    top
                 } else {
                     ahead
                 }
             } else {
+                step *= 0.5;
                 ahead
             };
-            if next.penetration > best.penetration {
+            let is_near = next.position.distance(contact.position) <= spacing;
+            if next.penetration > best.penetration && (is_curved || is_near) {
                 best = next;
-            } else {
-                step *= 0.5;
             }
         }
         best
@@ -92,7 +99,6 @@ struct Ascent<'a, 'q, F: ?Sized, O, S: ?Sized> {
     query: &'a Query<'q, F, O>,
     surface: &'a S,
     start: &'a Contact,
-    reach: f32,
 }
 
 impl<F: DistanceField + ?Sized, O, S: DistanceField + ?Sized> Ascent<'_, '_, F, O, S> {
@@ -104,11 +110,11 @@ impl<F: DistanceField + ?Sized, O, S: DistanceField + ?Sized> Ascent<'_, '_, F, 
         gradient.reject_from_normalized(contact.normal)
     }
 
-    /// The contact at the point of the surface that is closest to a point in reach; the first contact where
-    /// that is on another side.
+    /// The contact at the point of the surface that is closest to a point; the first contact where that is
+    /// on another side.
     fn contact_at(&self, point: Vec3) -> Contact {
         let (query, start) = (self.query, self.start);
-        let mut position = start.position + (point - start.position).clamp_length_max(self.reach);
+        let mut position = point;
         for _ in 0..PROJECTIONS {
             let inward = self.surface.inward_direction(position);
             position -= inward * self.surface.penetration(position, inward);
