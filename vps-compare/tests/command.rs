@@ -208,7 +208,8 @@ fn meshes_far_from_their_origins_are_compared_where_they_are() {
         let expected = if row["pose"] == "1" { 0.01 } else { -0.01 };
         assert!((number("x_m") - (apart.x + 1.0 - expected)).abs() < 1e-9);
         assert!((number("exact_penetration_m") - expected).abs() < 1e-3);
-        if row["algorithm"] != "voxels" {
+        // Voxels are thicker than the solid, and a triangle mesh has no depth.
+        if !["voxels", "trimesh"].contains(&row["algorithm"].as_str()) {
             assert!(number("error_m") < 2e-3, "{row:?}");
         }
         count += 1;
