@@ -4,7 +4,7 @@ use glamx::Vec3;
 
 use crate::shell::PointSphereTree;
 
-/// A shell point found in the field.
+/// A shell point found in the field, or the point of the surface it is [refined](crate::Query::refine) to.
 ///
 /// ```
 /// use vps_core::{HalfSpace, PointSphereTree, Pose3, Query, Vec3};
@@ -20,7 +20,7 @@ use crate::shell::PointSphereTree;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Index of the point in the shell.
+    /// Index of the point in the shell, also of a refined contact.
     pub point_index: u32,
     /// Its position P in metres in the shell frame.
     pub position: Vec3,

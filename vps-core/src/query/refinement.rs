@@ -6,16 +6,16 @@ use crate::field::DistanceField;
 use crate::query::contact::Contact;
 use crate::query::posed::Query;
 
-/// Steps of the ascent at most. Each about squares the error.
+/// Steps of the ascent at most. Two or three suffice on a ball.
 const MAX_STEPS: u32 = 6;
 
 /// Gain of penetration below which the ascent ends, relative to the spacing.
 const NEGLIGIBLE_GAIN: f32 = 1e-3;
 
 /// Largest distance of the point where the slope vanishes, in steps, at which the field counts as curved.
-const MAX_STRIDE: f32 = 8.0;
+const MAX_STRIDE: f32 = 16.0;
 
-/// Newton steps that bring a point back to the surface, of which it is off by the square of a step.
+/// Newton steps that bring a point back to the surface after a step along its tangent.
 const PROJECTIONS: u32 = 2;
 
 impl<F: DistanceField + ?Sized, O> Query<'_, F, O> {
@@ -23,18 +23,17 @@ impl<F: DistanceField + ?Sized, O> Query<'_, F, O> {
     /// the field of the shell's own body, in the shell frame, and `spacing` that of the points of the shell
     /// in metres.
     ///
-    /// Where the surface is curved in the field, as that of a ball on the ground, contacts are the local
-    /// maxima of penetration: samples around one all come to it. Where penetration rises evenly, as on a
-    /// face that is tilted against the ground, a contact stays within about `spacing` of its point, in the
-    /// piece of the surface that the point stands for.
+    /// Where the surface is curved in the field, as that of a ball on the ground, a contact comes to the
+    /// local maximum of penetration, as do those of other points around it. Where penetration rises
+    /// evenly, as on a face that is tilted against the ground, it stays within `spacing` of its point, in
+    /// the piece of the surface that the point stands for.
     ///
-    /// The contact is at least as deep as before, and lies on the surface to within
-    /// [`error_bound`](DistanceField::error_bound) of `surface`, so that it is no deeper than the deepest
-    /// point by more than that. Its normal is that of `surface`. It stays on its side of a thin wall.
+    /// The contact is at least as deep as before. It lies on the surface of `surface` to within its
+    /// [`error_bound`](DistanceField::error_bound), with its normal, and faces the same side.
     ///
     /// An ascent along the surface with secant steps, until a step gains less than a thousandth of the
-    /// spacing. Costs one gradient where the surface lies flat in the field, otherwise one or two
-    /// evaluations of both fields a step, for one to six steps.
+    /// spacing. Costs one gradient where the surface lies flat in the field, otherwise one or two points of
+    /// the surface a step for up to six steps; a point takes six evaluations of the fields.
     ///
     /// ```
     /// use vps_core::{Ball, HalfSpace, PointSphereTree, Pose3, Query, Vec3};
@@ -68,25 +67,26 @@ impl<F: DistanceField + ?Sized, O> Query<'_, F, O> {
                 break;
             }
             let direction = rise / slope;
-            let ahead = ascent.contact_at(best.position + direction * step);
+            let at = |distance: f32| ascent.contact_at(best.position + direction * distance);
+            let travelled = best.position.distance(contact.position);
+            let Some(ahead) = at(step) else {
+                step *= 0.5;
+                continue;
+            };
             // Where the slope vanishes if it falls evenly.
             let fall = slope - ascent.rise(&ahead).dot(direction);
             let to_top = step * slope / fall;
-            let is_curved = fall > 0.0 && to_top <= MAX_STRIDE * step;
-            let next = if is_curved {
-                let top = ascent.contact_at(best.position + direction * to_top);
-                step = 0.5 * to_top;
-                if top.penetration > ahead.penetration {
-                    top
-                } else {
-                    ahead
-                }
+            let next = if fall > 0.0 && to_top <= MAX_STRIDE * step {
+                step = 0.5 * step.min(to_top);
+                let top = at(to_top);
+                let is_top_deeper = |top: &Contact| top.penetration > ahead.penetration;
+                Some(top.filter(is_top_deeper).unwrap_or(ahead))
             } else {
+                let is_near = travelled + step <= 1.01 * spacing;
                 step *= 0.5;
-                ahead
+                is_near.then_some(ahead)
             };
-            let is_near = next.position.distance(contact.position) <= spacing;
-            if next.penetration > best.penetration && (is_curved || is_near) {
+            if let Some(next) = next.filter(|next| next.penetration > best.penetration) {
                 best = next;
             }
         }
@@ -110,9 +110,9 @@ impl<F: DistanceField + ?Sized, O, S: DistanceField + ?Sized> Ascent<'_, '_, F, 
         gradient.reject_from_normalized(contact.normal)
     }
 
-    /// The contact at the point of the surface that is closest to a point; the first contact where that is
-    /// on another side.
-    fn contact_at(&self, point: Vec3) -> Contact {
+    /// The contact at the point of the surface that is closest to a point, if it is found and faces the
+    /// side of the first contact.
+    fn contact_at(&self, point: Vec3) -> Option<Contact> {
         let (query, start) = (self.query, self.start);
         let mut position = point;
         for _ in 0..PROJECTIONS {
@@ -120,15 +120,18 @@ impl<F: DistanceField + ?Sized, O, S: DistanceField + ?Sized> Ascent<'_, '_, F, 
             position -= inward * self.surface.penetration(position, inward);
         }
         let normal = self.surface.inward_direction(position);
-        if normal.dot(start.normal) <= 0.0 {
-            return *start;
+        let off = self.surface.penetration(position, normal).abs();
+        let rounding = f32::EPSILON * position.length();
+        let is_found = off <= self.surface.error_bound() + rounding;
+        if !is_found || normal.dot(start.normal) <= 0.0 {
+            return None;
         }
         let at = query.rotation * position + query.translation;
-        Contact {
+        Some(Contact {
             position,
             normal,
             penetration: query.field.penetration(at, query.rotation * normal),
             ..*start
-        }
+        })
     }
 }

@@ -19,8 +19,8 @@ pub enum PairEvent {
     Contact {
         /// The contact as it was before.
         contact: PairContact,
-        /// Whether it is a contact of the step before, evaluated anew in the present pose. Either all of
-        /// these are kept in the end or none of them is. A point may have both a previous contact and a
+        /// Whether it is a contact of the step before, evaluated anew in the present pose. Of these, those
+        /// that are neither merged nor over the limit of a normal are all kept in the end, or none is. A point may have both a previous contact and a
         /// new one.
         is_previous: bool,
         /// What happens to it.

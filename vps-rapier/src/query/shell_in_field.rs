@@ -31,7 +31,8 @@ pub enum Sampling {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactPoints {
     /// The deepest point of the surface around a point of the shell (contact refinement): depth is as
-    /// exact as the fields, and changes smoothly as a body rolls.
+    /// exact as the fields, and changes smoothly as a body rolls. Voxelmaps sampled by eq. 4
+    /// ([`Sampling::Local`]) jump between voxels and are not refined in; neither are segments.
     #[default]
     Refined,
     /// The point of the shell itself, as in the paper: depth is as exact as the points are close.
@@ -166,7 +167,10 @@ impl<'s> ShellInField<'s> {
         let map = &field.asset().voxelmap;
         Self {
             tree: &shell.asset().tree,
-            refinement: Refinement::of(shell, contact_points),
+            refinement: match sampling {
+                Sampling::Trilinear => Refinement::of(shell, contact_points),
+                Sampling::Local => None,
+            },
             field: match sampling {
                 Sampling::Trilinear => Field::Trilinear(map.trilinear()),
                 Sampling::Local => Field::Local(map.local()),
@@ -226,7 +230,7 @@ impl<'s> ShellInField<'s> {
             || self.refinement.is_some() && self.deepest(pos12, 0.0).is_some()
     }
 
-    /// The deepest contact up to `prediction` metres away.
+    /// The deepest contact up to `prediction` metres away, refined from the deepest point of the shell.
     pub(crate) fn deepest(&self, pos12: &Pose3, prediction: f32) -> Option<PairContact> {
         let pose = self.shell_to_field(pos12);
         let (mut within, other) = match &self.field {
@@ -288,7 +292,12 @@ impl<'s> ShellInField<'s> {
         if shape.has_in_grid(pose.transform_point(found.points[shell_index])) {
             return Some(found);
         }
-        let contact = Query::new(self.tree, &ExtendedMap::new(shape), pose).closest()?;
+        let map = ExtendedMap::new(shape);
+        let query = Query::new(self.tree, &map, pose);
+        let mut contact = query.closest()?;
+        if let Some(Refinement { surface, spacing }) = &self.refinement {
+            contact = query.refine(&contact, surface, *spacing);
+        }
         let in_field = pose.transform_point(contact.position);
         if shape.has_in_grid(in_field) {
             return Some(self.pair_contact(&pose, &contact, prediction));
@@ -337,7 +346,7 @@ impl<'s> ShellInField<'s> {
             if !may_accept(point, outward) {
                 return;
             }
-            let contact = self.pair_contact(&pose, &contact, prediction);
+            let contact = self.refined_contact(&pose, &contact, prediction);
             if accept(&contact) {
                 deepest = Some(contact);
             }
@@ -416,7 +425,7 @@ impl<'s> ShellInField<'s> {
         let pose = self.shell_to_field(pos12);
         let level = level.clamp(1, self.tree.level_count());
         let visit = |segment, contact| {
-            let mut contact = self.refined_contact(&pose, &contact, prediction);
+            let mut contact = self.pair_contact(&pose, &contact, prediction);
             contact.ids = self.in_order(PackedFeatureId::face(segment), PackedFeatureId::UNKNOWN);
             found.push(contact);
         };

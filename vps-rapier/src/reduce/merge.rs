@@ -6,31 +6,37 @@ use super::parameters::WARM_START_COSINE;
 use crate::query::event::{ContactEvent, ContactObserver, PairEvent};
 use crate::query::pair_contact::PairContact;
 
-/// Drops contacts of shells that lie less than `distance` metres from a deeper contact with a similar
-/// normal, or from an earlier one as deep.
+/// Drops contacts of shells less than `distance` metres from a deeper contact that is kept and has a
+/// similar normal; of equally deep ones the first is kept. The deepest then comes first, as it does before
+/// refinement.
 pub(super) fn merge(
     contacts: &mut Vec<PairContact>,
     distance: f32,
     observer: &ContactObserver<'_, impl Observer<PairEvent>>,
 ) {
-    let is_same = |a: &PairContact, b: &PairContact| {
-        a.points[0].distance(b.points[0]) < distance
-            && a.normals[0].dot(b.normals[0]) > WARM_START_COSINE
-    };
-    let mut i = 0;
-    while i < contacts.len() {
-        let contact = contacts[i];
-        let is_merged = contact.shell_normal.is_some()
-            && contacts.iter().enumerate().any(|(j, other)| {
-                let is_deeper = other.penetration > contact.penetration
-                    || other.penetration == contact.penetration && j < i;
-                j != i && is_deeper && is_same(&contact, other)
-            });
-        if is_merged {
-            observer.observe(&contact, ContactEvent::Merged);
-            contacts.remove(i);
+    let mut by_depth: Vec<usize> = (0..contacts.len()).collect();
+    by_depth.sort_by(|&a, &b| contacts[b].penetration.total_cmp(&contacts[a].penetration));
+    let mut kept: Vec<usize> = Vec::with_capacity(contacts.len());
+    for i in by_depth {
+        let contact = &contacts[i];
+        // On the surface of the shell.
+        let side = usize::from(!contact.shell_is_first);
+        let is_same = |&other: &usize| {
+            let other = &contacts[other];
+            contact.points[side].distance(other.points[side]) < distance
+                && contact.normals[0].dot(other.normals[0]) > WARM_START_COSINE
+        };
+        if contact.shell_normal.is_some() && kept.iter().any(is_same) {
+            observer.observe(contact, ContactEvent::Merged);
         } else {
-            i += 1;
+            kept.push(i);
         }
     }
+    let deepest = kept.first().copied();
+    kept.sort_unstable();
+    if let Some(deepest) = deepest {
+        let at = kept.partition_point(|&i| i < deepest);
+        kept[..=at].rotate_right(1);
+    }
+    *contacts = kept.into_iter().map(|i| contacts[i]).collect();
 }
