@@ -120,7 +120,6 @@ proptest! {
             prop_assert!(nearest <= 2.23 * spacing, "{place} is {nearest} m from the next point");
         }
     }
-
 }
 
 #[test]

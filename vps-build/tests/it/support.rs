@@ -1,4 +1,4 @@
-//! Random solids and poses.
+//! Random solids.
 
 use proptest::prelude::*;
 use vps_build::{BuildOptions, Density, Encoding, Mesh, PointCount, Resolution, build};

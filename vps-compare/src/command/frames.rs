@@ -28,7 +28,7 @@ impl LocalMeshes {
 }
 
 /// The centre of a mesh, to within a quarter of its longest side. A multiple of a power of two has few
-/// digits, so that subtracting it loses nothing; for a mesh about its origin it is zero.
+/// digits, so that subtracting it loses almost nothing; for a mesh about its origin it is zero.
 fn origin(mesh: &Mesh) -> DVec3 {
     let (low, high) = mesh.bounds();
     let step = (0.5 * (high - low).max_element()).log2().floor().exp2();

@@ -80,10 +80,10 @@ const MAX_DRAWS: usize = 1000;
 /// Separation of touching solids, relative to the size of both.
 const TOUCHING: f64 = 1e-5;
 
-/// Random poses, between the local frames, around first contact. Orientation and direction are random; B is moved from afar
-/// along the direction to where it first touches A, and then further or back by a distance: that of
-/// the i-th of `count` poses is random within the i-th of `count` equal parts of -`spread_m` to
-/// `spread_m`.
+/// Random poses around first contact, between the local frames. Orientation and direction are random; B
+/// is moved from afar along the direction to where it first touches A, and then further or back by a
+/// distance: that of the i-th of `count` poses is random within the i-th of `count` equal parts of
+/// -`spread_m` to `spread_m`.
 pub(super) fn random(
     [mesh_a, mesh_b]: [&Mesh; 2],
     oracle: &SolidOracle,

@@ -28,7 +28,7 @@ pub(super) struct PreparedInfo {
     pub(super) memory_is_estimate: bool,
 }
 
-/// A pose of B in the frame of A, and the prediction distance.
+/// A pose of B in A between the local frames, and the prediction distance.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) struct QueryRequest {
     prediction_m: f64,

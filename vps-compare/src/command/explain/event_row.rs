@@ -28,7 +28,7 @@ pub(super) struct EventRow {
     pub(super) penetration_m: Option<f32>,
     /// Why, or what a search goes by.
     pub(super) reason: &'static str,
-    /// A point of the shell, in the frame of A.
+    /// A point of the shell or, of a contact, of the surface it samples; in the frame of A.
     pub(super) x_m: Option<f64>,
     pub(super) y_m: Option<f64>,
     pub(super) z_m: Option<f64>,

@@ -7,7 +7,7 @@ use vps_rapier::{PairDropReason, TurnReason};
 pub(super) const UNTESTED: &str = "untested";
 /// The outcome of a point that was tested and is no contact.
 pub(super) const NO_CONTACT: &str = "no_contact";
-/// The outcome of a contact that lies exactly where another one does.
+/// The outcome of a contact that lies where another one does.
 pub(super) const MERGED: &str = "merged";
 /// The outcome of a contact that remains.
 pub(super) const KEPT: &str = "kept";
@@ -45,7 +45,7 @@ pub(super) fn meaning(outcome: &str) -> &'static str {
     match outcome {
         UNTESTED => "below pruned clusters, and no contact",
         NO_CONTACT => "tested, and too far outside to be a contact",
-        MERGED => "exactly where another contact lies",
+        MERGED => "where another contact lies, or refined to the same deepest point",
         KEPT => "kept",
         "low_weight" => "less than half of the weight of the deepest contact: too far outside",
         "no_area" => "within the polygon of the selected contacts",

@@ -63,7 +63,7 @@ pub(super) struct KeptContact {
     pub(super) shell: &'static str,
     pub(super) point: Option<u32>,
     pub(super) penetration_m: f32,
-    /// The point of the shell, in the frame of A.
+    /// Its point on the surface of the shell's mesh, in the frame of A.
     pub(super) position_m: [f64; 3],
     /// Unit normal out of A, in the frame of A.
     pub(super) normal: [f32; 3],
