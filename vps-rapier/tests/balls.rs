@@ -29,22 +29,28 @@ fn grounds() -> [(&'static str, SharedShape); 3] {
     ]
 }
 
+/// A world for the ball, with fixed ground.
+fn world_on(ground: &SharedShape) -> PhysicsWorld {
+    let mut world = PhysicsWorld::default();
+    set_up(
+        &mut world.narrow_phase,
+        &mut world.integration_parameters,
+        0.1,
+    );
+    world.insert(
+        RigidBodyBuilder::fixed(),
+        ColliderBuilder::new(ground.clone()),
+    );
+    world
+}
+
 #[test]
 fn a_ball_dropped_straight_goes_straight() {
     let mut failed = String::new();
     for (ground_name, ground) in grounds() {
         let top = ground.compute_local_aabb().maxs.y;
         for i in 0..6 {
-            let mut world = PhysicsWorld::default();
-            set_up(
-                &mut world.narrow_phase,
-                &mut world.integration_parameters,
-                0.1,
-            );
-            world.insert(
-                RigidBodyBuilder::fixed(),
-                ColliderBuilder::new(ground.clone()),
-            );
+            let mut world = world_on(&ground);
             let height = 0.01 + 0.1 * i as Real;
             let at = Vector::new(0.13 - 0.021 * i as Real, top + RADIUS + height, 0.07);
             let start = RigidBodyBuilder::dynamic().translation(at);
@@ -81,16 +87,7 @@ fn a_ball_rolls_on() {
         let asset = Arc::new(build(&mesh, &options, &|_| ()).unwrap().asset);
         let ball = SharedShape::new(VpsShape::new(asset));
         let spin = 20.0;
-        let mut world = PhysicsWorld::default();
-        set_up(
-            &mut world.narrow_phase,
-            &mut world.integration_parameters,
-            0.1,
-        );
-        world.insert(
-            RigidBodyBuilder::fixed(),
-            ColliderBuilder::cuboid(5.0, 0.1, 0.5),
-        );
+        let mut world = world_on(&SharedShape::cuboid(5.0, 0.1, 0.5));
         let start = RigidBodyBuilder::dynamic()
             .translation(Vector::new(-4.0, 0.1 + RADIUS, 0.0))
             .linvel(Vector::X * (spin * RADIUS))
