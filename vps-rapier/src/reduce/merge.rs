@@ -14,6 +14,10 @@ pub(super) fn merge(
     distance: f32,
     observer: &ContactObserver<'_, impl Observer<PairEvent>>,
 ) {
+    if distance == 0.0 {
+        // None is refined, and their order is that of the search.
+        return;
+    }
     let mut by_depth: Vec<usize> = (0..contacts.len()).collect();
     by_depth.sort_by(|&a, &b| contacts[b].penetration.total_cmp(&contacts[a].penetration));
     let mut kept: Vec<usize> = Vec::with_capacity(contacts.len());
